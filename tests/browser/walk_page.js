@@ -160,6 +160,28 @@ const main = async () => {
                 await browser.run(
                     '!document.getElementById("legend").hidden && /another photograph/.test(document.getElementById("legend").textContent)'),
                 'no legend');
+            check(
+                'colours_of_origin_have_patterns_of_their_own',
+                await browser.run(`(() => {
+                    const all = [...document.querySelectorAll('#legend i')].map((i) => getComputedStyle(i).backgroundImage);
+                    return all.length > 3 && new Set(all).size === all.length; })()`),
+                'two look alike without their colours');
+            // the contrast of text with what is behind it, as WCAG 2.1, 1.4.3 defines it
+            const contrast = await browser.run(`(() => {
+                const rgb = (c) => c.match(/[0-9.]+/g).map(Number);
+                const light = (c) => c.slice(0, 3).map((x) => x / 255).map((x) => x <= 0.04045 ? x / 12.92 :
+                    ((x + 0.055) / 1.055) ** 2.4).reduce((s, x, k) => s + x * [0.2126, 0.7152, 0.0722][k], 0);
+                const behind = (e) => { for (; e; e = e.parentElement) { const c = rgb(getComputedStyle(e).backgroundColor);
+                    if (c.length < 4 || c[3] > 0.5) return c; } return [0, 0, 0]; };
+                let least = 99, which = '';
+                for (const e of document.querySelectorAll('button, select, h1, label, #told, #legend div, .tag')) {
+                    if (e.getAttribute('aria-disabled') === 'true') continue;
+                    const [a, b] = [light(rgb(getComputedStyle(e).color)), light(behind(e))].sort((x, y) => y - x);
+                    const c = (a + 0.05) / (b + 0.05);
+                    if (c < least) [least, which] = [c, e.id || e.textContent];
+                }
+                return [least, which]; })()`);
+            check('text_has_a_contrast_of_4_5_at_least', contrast[0] >= 4.5, contrast.join(' '));
             await browser.key('c');
             await browser.key('m');
             await browser.key('Enter');

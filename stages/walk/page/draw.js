@@ -13,6 +13,14 @@
 // White stands for more light than a picture holds, a lamp or the sky: it stays white where something covers part of it.
 const LINEAR = `vec3 linear(vec3 c) { return c * c * (min(min(c.r, c.g), c.b) > .992 ? 3. : 1.); }
 `;
+// Patterns over the colours of origin, so that nobody needs to tell colours apart: as the legend has them in walk.css.
+const HATCH = `float hatch(int k) {
+    vec2 p = mod(gl_FragCoord.xy, 14.);
+    bool on = k == 0 ? mod(p.x - p.y + 14., 14.) < 3. : k == 2 ? length(p - 7.) < 1.5 : k == 3 ? mod(p.x + p.y, 14.) < 3. :
+        k == 4 ? length(p - 7.) < 4. : k == 5 ? min(p.x, p.y) < 2. : k == 6 ? p.y < 3. : k == 7 ? p.x < 3. : false;
+    return on ? .45 : 1.;
+}
+`;
 W.squared = (linear) =>
     linear.map((x) => Math.min(1, x <= 0.0031308 ? 12.92 * x : 1.055 * x ** (1 / 2.4) - 0.055) ** 2);
 
@@ -79,7 +87,7 @@ W.shaders = {
         `layout(location=0) in vec3 p; layout(location=2) in vec4 rect; uniform mat4 clip; flat out vec4 box;
         void main() { gl_Position = clip * vec4(p, 1.); box = rect; }`,
         `flat in vec4 box; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
-        void main() { colour = vec4(made == 1 ? kinds[5] : box.rgb, 1.); }`
+        void main() { colour = vec4(made == 1 ? kinds[5] * hatch(5) : box.rgb, 1.); }`
     ],
     // the same as face, in colours of origin, or as factors of light
     origin: [
@@ -96,10 +104,11 @@ W.shaders = {
             colour = vec4(made == 0 && most != 1. ? pow(t.rgb * most, vec3(.9)) : t.rgb, alpha);
             if (made == 1) {
                 float a = texelFetch(page, ivec2(uv), 0).a;
-                vec3 k = a > .9 ? kinds[2] : a > .6 ? kinds[3] : a > .4 || a < .02 ? kinds[4] : kinds[5];
-                colour.rgb = mix(k, k * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5);
+                int of = a > .9 ? 2 : a > .6 ? 3 : a > .4 || a < .02 ? 4 : 5;
+                vec3 k = kinds[of];
+                colour.rgb = mix(k, k * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) * hatch(of);
             }
-            if (made == 2) { colour = vec4(abs(dot(t.rgb * most, vec3(1. / 3.)) - 1.) > .03 ? kinds[0] : vec3(1), 1); }
+            if (made == 2) { colour = vec4(abs(dot(t.rgb * most, vec3(1. / 3.)) - 1.) > .03 ? kinds[0] * hatch(0) : vec3(1), 1); }
         }`
     ],
     sky: [
@@ -110,7 +119,7 @@ W.shaders = {
             vec3 d = turn * vec3((at.x - lens.z) / lens.x, (at.y - lens.w) / lens.y, 1.);
             vec2 uv = vec2(atan(d.y, d.x) / 6.2831853 + .5, .5 - atan(d.z, length(d.xy)) / 3.1415927);
             colour = vec4(linear(textureLod(page, uv, 0.).rgb), 1.);
-            if (made == 1) colour.rgb = mix(kinds[6], colour.rgb, .3);
+            if (made == 1) colour.rgb = mix(kinds[6], colour.rgb, .3) * hatch(6);
         }`
     ],
     // a photograph in its viewpoint
@@ -129,7 +138,7 @@ W.shaders = {
             colour = vec4(t.rgb, alpha);
             if (made == 1) {
                 int k = change == 1 ? int(texelFetch(page, ivec2(uv * vec2(textureSize(page, 0))), 0).a * 17. - 6.6667 + .5) : 1;
-                colour.rgb = mix(kinds[clamp(k, 0, 8)], t.rgb, .3);
+                colour.rgb = mix(kinds[clamp(k, 0, 8)], t.rgb, .3) * hatch(k);
             }
         }`
     ],
@@ -144,7 +153,7 @@ W.shaders = {
             all = vec4(vote.x);
             a *= vote.y;
             t.rgb = linear(t.rgb) * light;
-            vec3 c = made == 1 ? mix(kinds[7], kinds[7] * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) : t.rgb;
+            vec3 c = made == 1 ? mix(kinds[7], kinds[7] * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) * hatch(7) : t.rgb;
             a *= vote.x;
             colour = vec4(c * a, a);
         }`
@@ -159,7 +168,7 @@ W.shaders = {
         `layout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 clip; out vec3 normal;
         void main() { normal = n; gl_Position = clip * vec4(p, 1.); }`,
         `in vec3 normal; uniform vec3 albedo; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
-        void main() { colour = vec4(made == 1 ? kinds[5] : albedo * (.75 + .25 * normalize(normal).z), 1.); }`
+        void main() { colour = vec4(made == 1 ? kinds[5] * hatch(5) : albedo * (.75 + .25 * normalize(normal).z), 1.); }`
     ],
     show: [
         `layout(location=0) in vec3 p; out vec2 uv; uniform vec2 part;
@@ -198,7 +207,7 @@ class Painter {
     compile(name) {
         const gl = this.gl, program = gl.createProgram(), head = (i) => `#version 300 es
 precision highp float; precision highp int;
-${i ? LINEAR : ''}`;
+${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
         W.shaders[name].forEach((text, i) => {
             const shader = gl.createShader(i ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
             gl.shaderSource(shader, head(i) + text);

@@ -17,8 +17,9 @@ const marks = () => {
             if (!S.above && W.hit(scene.models[S.edit], camera.centre, to, 0.97, false)) return;
             const r = Math.min(S.above ? 11 : 26, Math.max(5, (0.025 * S.size * camera.lens[0] * ratio) / at[2]));
             S.spots.push([at[0], at[1], r, i]);
-            parts.push(`<ellipse class="spot" cx="${at[0].toFixed(1)}" cy="${at[1].toFixed(1)}" rx="${
-                r.toFixed(1)}" ry="${(r * (S.above ? 0.8 : 0.38)).toFixed(1)}"/>`);
+            for (const kind of ['spot under', 'spot'])  // a dark edge: floors may be white
+                parts.push(`<ellipse class="${kind}" cx="${at[0].toFixed(1)}" cy="${at[1].toFixed(1)}" rx="${
+                    r.toFixed(1)}" ry="${(r * (S.above ? 0.8 : 0.38)).toFixed(1)}"/>`);
         });
     if (S.measure) {
         const ends = S.measure.points.map(on), c = [canvas.clientWidth / 2, canvas.clientHeight / 2];

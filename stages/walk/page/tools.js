@@ -138,10 +138,11 @@ const build = () => {
         outdoors: 'what lies outdoors',
         clutter: 'furniture, by its depth in the photographs'
     };
-    const box = (rgb, text) => `<div><i style="background:rgb(${rgb.join()})"></i>${text}</div>`;
+    const box = (rgb, text, word) =>
+        `<div><i class="hatch ${word}" style="background-color:rgb(${rgb.join()})"></i>${text}</div>`;
     $('legend').innerHTML = '<b>Where the picture comes from</b>' +
-        scene.made.filter((k) => words[k.word]).map((k) => box(k.rgb, words[k.word])).join('') +
-        box([255, 205, 40], 'yellow over it: relit') + '<div id="aimed"></div>';
+        scene.made.filter((k) => words[k.word]).map((k) => box(k.rgb, words[k.word], k.word)).join('') +
+        box([255, 205, 40], 'over it: another light', 'relit');
     $('help').innerHTML = `<h2>Walk through ${W.escape(scene.name)}</h2><table>
 <tr><td>drag, <kbd>←</kbd> <kbd>→</kbd>, <kbd>PgUp</kbd> <kbd>PgDn</kbd></td><td>look around</td></tr>
 <tr><td>click, <kbd>↑</kbd> <kbd>↓</kbd>, <kbd>A</kbd> <kbd>D</kbd></td><td>go there; walk; step aside. On a touch screen: one finger turns, a touch goes there, two fingers moved together walk, spread they zoom.</td></tr>
