@@ -28,7 +28,7 @@ static void needs_texts(struct graph *g, const struct scene_facts *f)
 static void takes_if_made(struct graph *g, const char *option, const char *path, const char *folder)
 {
     const bool is_made = path_is_file(path);
-    if (option) rule_needs(g, graph_stamp(g, graph_text(g, "draw%s.txt", option + 1), is_made ? "yes" : "none"));
+    if (option) rule_needs(g, graph_stamp(g, graph_text(g, "draw-made%s.txt", option + 1), is_made ? "yes" : "none"));
     if (is_made) rule_needs(g, path);
     if (option) rule_option(g, option, is_made ? (folder ? folder : path) : NULL);
 }

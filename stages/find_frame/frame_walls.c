@@ -15,7 +15,8 @@
  * doors.
  *
  * Lastly, walls that may be edges on others are dropped (explained_walls.c), gaps between the ends of walls are closed
- * where a few lines show that there is a wall (closing_walls.c), and what is open in walls is cut out (open_walls.c). */
+ * where a few lines show that there is a wall (closing_walls.c), and what is open in walls is cut out
+ * (open_walls.c). */
 #include "stages/find_frame/frame_walls.h"
 
 #include <math.h>

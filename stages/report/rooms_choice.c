@@ -1,9 +1,9 @@
 /* rooms_choice.c - which photos show the changes.
  *
- * Changes take turns in choosing the photo that shows them best, until ROOMS_SHOWN are chosen: what changed and is known,
- * not guessed; new light counts less, and a photo from the place of another that was chosen comes later. A photo that
- * most changes alter comes first. All changes that one sees in a photo can be chosen for it; what alters less than LEAST
- * percent of it is left out. */
+ * Changes take turns in choosing the photo that shows them best, until ROOMS_SHOWN are chosen: what changed and is
+ * known, not guessed; new light counts less, and a photo from the place of another that was chosen comes later. A photo
+ * that most changes alter comes first. All changes that one sees in a photo can be chosen for it; what alters less than
+ * LEAST percent of it is left out. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
