@@ -165,8 +165,9 @@ const tests = {
             inverse[k] = i < 11 ? 0.2 + 0.002 * i + 0.001 * j : i === 15 && j === 6 ? 0 : 0.5;
         }
         const covered = new Uint8Array(columns * rows), edges = new Map();
-        const blocks = W.clutterBlocks(inverse, things, columns, rows);
-        for (const [, k, n, around] of blocks) {
+        const blocks = W.clutterBlocks(inverse, things, columns, rows, 0.08);
+        for (const [, k, n, share, around] of blocks) {
+            assert(share >= 0 && share < 1);
             for (let j = 0; j < n; j++)
                 for (let i = 0; i < n; i++) covered[k + j * columns + i]++;
             around.forEach((a, i) => edges.set(`${a} ${around[(i + 1) % around.length]}`, true));
@@ -205,7 +206,7 @@ const tests = {
     },
     furniture_takes_the_change_of_light_of_the_faces_around_it() {
         const model = room(), size = [4, 3, 2.5], data = new Uint8Array(4 * 60 * 10);
-        const tiles = model.faces.map((f, k) => {  // 10 x 10 texels for each face
+        const tiles = model.faces.map((f, k) => {  // 10 x 10 texels each
             const [i, j] = f.axes, row = (a, x) => [0, 1, 2].map((c) => (c === a ? 10 / size[a] : 0)).concat(x);
             return [f.id, 0, 10 * k, 0, 10, 10, [...row(i, 10 * k), ...row(j, 0), 0, 0, 0, 1]];
         });

@@ -1,15 +1,15 @@
 // draw.js - draws the rooms with WebGL 2.
 //
-// A picture of the rooms is made in a buffer of half floats: the faces under the textures of two
+// A picture of the rooms is made in a buffer of sRGB: the faces under the textures of two
 // viewpoints, then under the texture of all faces where these have none, then what lies outdoors, then the change of
 // light of an edit. The stencil says which pixels have their colour: 1: of the first viewpoint, 2: done. The alpha of
 // the buffer is the share of the first viewpoint where that has a texel, so that the second one blends to it. Furniture
-// is drawn from several photographs into a buffer of its own: first its depth, then the mean of what they show near
+// is drawn from several photographs into a buffer of half floats: first its depth, then the mean of what they show near
 // that depth. In a viewpoint the photograph itself covers all.
 'use strict';
 
-// Pictures are blended as squares of sRGB, which are nearly linear in light: the way there and back is exact and quick,
-// where textures of sRGB take half of the time when software draws.
+// Furniture and samples of a pixel are summed as squares of sRGB, which are nearly linear in light: the way there and
+// back is exact and quick, where textures of sRGB take half of the time when software draws.
 // White stands for more light than a picture holds, a lamp or the sky: it stays white where something covers part of it.
 const LINEAR = `vec3 linear(vec3 c) { return c * c * (min(min(c.r, c.g), c.b) > .992 ? 3. : 1.); }
 `;
@@ -18,7 +18,7 @@ const HATCH = `float hatch(int k) {
     vec2 p = mod(gl_FragCoord.xy, 14.);
     bool on = k == 0 ? mod(p.x - p.y + 14., 14.) < 3. : k == 2 ? length(p - 7.) < 1.5 : k == 3 ? mod(p.x + p.y, 14.) < 3. :
         k == 4 ? length(p - 7.) < 4. : k == 5 ? min(p.x, p.y) < 2. : k == 6 ? p.y < 3. : k == 7 ? p.x < 3. : false;
-    return on ? .45 : 1.;
+    return on ? .6 : 1.;
 }
 `;
 W.squared = (linear) =>
@@ -79,7 +79,7 @@ W.shaders = {
         void main() {
             vec4 t = texture(page, clamp(at.xy / at.z, box.xy, box.zw));
             if (t.a < least) discard;
-            colour = vec4(linear(t.rgb), alpha);
+            colour = vec4(t.rgb, alpha);
         }`
     ],
     // a surface of one colour: rect holds it
@@ -87,7 +87,7 @@ W.shaders = {
         `layout(location=0) in vec3 p; layout(location=2) in vec4 rect; uniform mat4 clip; flat out vec4 box;
         void main() { gl_Position = clip * vec4(p, 1.); box = rect; }`,
         `flat in vec4 box; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
-        void main() { colour = vec4(made == 1 ? kinds[5] * hatch(5) : box.rgb, 1.); }`
+        void main() { colour = vec4(sqrt(made == 1 ? kinds[5] * hatch(5) : box.rgb), 1.); }`
     ],
     // the same as face, in colours of origin, or as factors of light
     origin: [
@@ -100,15 +100,18 @@ W.shaders = {
             vec2 uv = clamp(at.xy / at.z, box.xy + .5, box.zw - .5);
             vec4 t = texture(page, uv / size);
             if (t.a < least) discard;
-            t.rgb = most == 1. ? linear(t.rgb) : pow(t.rgb, vec3(2.2));
-            colour = vec4(made == 0 && most != 1. ? pow(t.rgb * most, vec3(.9)) : t.rgb, alpha);
-            if (made == 1) {
+            if (most == 1.) {
+                t.rgb = linear(t.rgb);
                 float a = texelFetch(page, ivec2(uv), 0).a;
                 int of = a > .9 ? 2 : a > .6 ? 3 : a > .4 || a < .02 ? 4 : 5;
                 vec3 k = kinds[of];
-                colour.rgb = mix(k, k * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) * hatch(of);
+                colour = vec4(sqrt(mix(k, k * dot(t.rgb, vec3(.2126, .7152, .0722)) * 2., .5) * hatch(of)), alpha);
+            } else {  // half of the factor of sRGB: twice the product is taken
+                t.rgb = pow(t.rgb, vec3(2.2)) * most;
+                bool changes = abs(dot(t.rgb, vec3(1. / 3.)) - 1.) > .03;
+                vec3 factor = made == 0 ? pow(t.rgb, vec3(.45)) : changes ? sqrt(kinds[0] * hatch(0)) : vec3(1);
+                colour = vec4(.5 * factor, 1.);
             }
-            if (made == 2) { colour = vec4(abs(dot(t.rgb * most, vec3(1. / 3.)) - 1.) > .03 ? kinds[0] * hatch(0) : vec3(1), 1); }
         }`
     ],
     sky: [
@@ -118,8 +121,8 @@ W.shaders = {
         void main() {
             vec3 d = turn * vec3((at.x - lens.z) / lens.x, (at.y - lens.w) / lens.y, 1.);
             vec2 uv = vec2(atan(d.y, d.x) / 6.2831853 + .5, .5 - atan(d.z, length(d.xy)) / 3.1415927);
-            colour = vec4(linear(textureLod(page, uv, 0.).rgb), 1.);
-            if (made == 1) colour.rgb = mix(kinds[6], colour.rgb, .3) * hatch(6);
+            colour = vec4(textureLod(page, uv, 0.).rgb, 1.);
+            if (made == 1) colour.rgb = sqrt(mix(kinds[6], linear(colour.rgb), .3) * hatch(6));
         }`
     ],
     // a photograph in its viewpoint
@@ -134,11 +137,10 @@ W.shaders = {
         void main() {
             vec4 t = texture(page, uv);
             if (t.a < .03) discard;
-            t.rgb = linear(t.rgb);
             colour = vec4(t.rgb, alpha);
             if (made == 1) {
                 int k = change == 1 ? int(texelFetch(page, ivec2(uv * vec2(textureSize(page, 0))), 0).a * 17. - 6.6667 + .5) : 1;
-                colour.rgb = mix(kinds[clamp(k, 0, 8)], t.rgb, .3) * hatch(k);
+                colour.rgb = sqrt(mix(kinds[clamp(k, 0, 8)], linear(t.rgb), .3) * hatch(k));
             }
         }`
     ],
@@ -168,14 +170,20 @@ W.shaders = {
         `layout(location=0) in vec3 p; layout(location=1) in vec3 n; uniform mat4 clip; out vec3 normal;
         void main() { normal = n; gl_Position = clip * vec4(p, 1.); }`,
         `in vec3 normal; uniform vec3 albedo; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
-        void main() { colour = vec4(made == 1 ? kinds[5] * hatch(5) : albedo * (.75 + .25 * normalize(normal).z), 1.); }`
+        void main() { colour = vec4(sqrt(made == 1 ? kinds[5] * hatch(5) : albedo * (.75 + .25 * normalize(normal).z)), 1.); }`
     ],
     show: [
         `layout(location=0) in vec3 p; out vec2 uv; uniform vec2 part;
         void main() { gl_Position = vec4(p.xy, 0., 1.); uv = (p.xy * .5 + .5) * part; }`,
-        `in vec2 uv; uniform sampler2D shell, clutter, all; uniform int furniture; out vec4 colour;
+        `in vec2 uv; uniform sampler2D shell, clutter, all; uniform int furniture, four; out vec4 colour;
         void main() {
-            vec3 c = texture(shell, uv).rgb;
+            vec3 c;
+            if (four == 1) {  // samples of a pixel
+                ivec2 at = 2 * ivec2(gl_FragCoord.xy);
+                c = vec3(0);
+                for (int k = 0; k < 4; k++) c += .25 * linear(texelFetch(shell, at + ivec2(k & 1, k >> 1), 0).rgb);
+            } else
+                c = linear(texture(shell, uv).rgb);
             if (furniture == 1) {
                 vec4 f = texture(clutter, uv);
                 if (f.a > 0.) c = mix(c, f.rgb / f.a, min(1., f.a / texture(all, uv).r));
@@ -185,7 +193,7 @@ W.shaders = {
     ],
 };
 
-W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter', 'own', 'count', 'sight', 'all', 'lit', 'volume']);  // uniforms
+W.integers = new Set(['made', 'kind', 'furniture', 'change', 'shell', 'clutter', 'own', 'count', 'sight', 'all', 'lit', 'volume', 'four']);  // uniforms
 
 class Painter {
     constructor(canvas) {
@@ -292,10 +300,10 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
         this.depth = gl.createRenderbuffer();
         gl.bindRenderbuffer(gl.RENDERBUFFER, this.depth);
         gl.renderbufferStorage(gl.RENDERBUFFER, gl.DEPTH24_STENCIL8, width, height);
-        this.targets = [0, 1].map(() => {
+        this.targets = [gl.RGBA8, this.floats ? gl.RGBA16F : gl.RGBA8].map((format) => {
             const colour = gl.createTexture(), frame = gl.createFramebuffer();
             gl.bindTexture(gl.TEXTURE_2D, colour);
-            gl.texStorage2D(gl.TEXTURE_2D, 1, this.floats ? gl.RGBA16F : gl.RGBA8, width, height);
+            gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR);
             gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.LINEAR);
             gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
@@ -437,7 +445,7 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
             gl.stencilFunc(gl.NOTEQUAL, 128, 128);
             gl.stencilOp(gl.KEEP, gl.KEEP, gl.REPLACE);
             gl.enable(gl.BLEND);
-            gl.blendFunc(gl.DST_COLOR, gl.ZERO);
+            gl.blendFunc(gl.DST_COLOR, gl.SRC_COLOR);
             this.faces('origin', p.light.set, 0, {
                 ...values,
                 alpha: 1,
@@ -480,7 +488,8 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
             clutter: 1,
             all: 3,
             part: [wide / this.width, high / this.height],
-            furniture: p.clutter.draws.length && !p.photos.length ? 1 : 0
+            furniture: p.clutter.draws.length && !p.photos.length ? 1 : 0,
+            four: part === 2 ? 1 : 0
         });
         this.draw(this.square, 0, 4, true);
     }
@@ -587,7 +596,7 @@ W.shaders.lay = [
     void main() {
         vec4 f = texture(shell, uv);
         if (f.a <= 0.) discard;
-        colour = vec4(f.rgb / f.a, min(1., f.a / texture(all, uv).r));
+        colour = vec4(sqrt(f.rgb / f.a), min(1., f.a / texture(all, uv).r));
     }`
 ];
 W.Painter = Painter;

@@ -272,13 +272,17 @@ W.clutterGrid = (scene, view, grid, bytes) => {
         const p = W.add(W.turnBack(view.turn, [((u - cx) / fx) * z, ((v - cy) / fy) * z, z]), view.centre);
         points.set([...p, u / view.width, v / view.height, (0.03 / 255) * bytes[3 * count + k] + (things[k] ? 1 : 0)], 6 * k);
     }
-    return {points, columns, cells: W.clutterBlocks(inverse, things, columns, rows)};
+    return {points, columns, cells: W.clutterBlocks(inverse, things, columns, rows, (STEEPEST * step) / fx)};
 };
 
-// Squares of a grid that lie on one surface: [thing, first point, side in cells, points around], as large as their
-// surface is flat there, which a plane is in 1 / z. Points of smaller neighbours are among those around a square, so
-// that no crack opens between them.
-W.clutterBlocks = (inverse, things, columns, rows) => {
+// How steep a surface may be towards the view that shows it, as a slope. What is steeper joins the edge of a thing with
+// what is behind it, and would be a rag when it is seen from elsewhere.
+const STEEPEST = 8, STEEPEST_FROM_ABOVE = 3;
+
+// Squares of a grid that lie on one surface, which changes by less than the share `steep` from one point to the next:
+// [thing, first point, side in cells, share of `steep`, points around], as large as their surface is flat there, which a
+// plane is in 1 / z. Points of smaller neighbours are among those around a square, so that no crack opens between them.
+W.clutterBlocks = (inverse, things, columns, rows, steep) => {
     const taken = new Uint8Array(columns * rows), used = new Uint8Array(columns * rows), blocks = [];
     const isFlat = (k, n) => {
         const d = (i, j) => inverse[k + j * columns + i], least = 0.02 * d(0, 0);
@@ -298,12 +302,13 @@ W.clutterBlocks = (inverse, things, columns, rows) => {
                 if (n > 1) {
                     if (!isFlat(k, n)) continue;
                 } else {
-                    const d = corners.map((c) => inverse[c]), low = Math.min(...d);
-                    if (!(low > 0 && Math.max(...d) < 1.08 * low)) continue;
+                    const low = Math.min(...corners.map((c) => inverse[c]));
+                    if (!(low > 0 && Math.max(...corners.map((c) => inverse[c])) < (1 + steep) * low)) continue;
                 }
                 for (let y = 0; y < n; y++) taken.fill(1, k + y * columns, k + y * columns + n);
                 corners.forEach((c) => (used[c] = 1));
-                blocks.push([corners.map((c) => things[c]).find((x) => x) || 0, k, n]);
+                const d = corners.map((c) => inverse[c]), share = (Math.max(...d) / Math.min(...d) - 1) / (n * steep);
+                blocks.push([corners.map((c) => things[c]).find((x) => x) || 0, k, n, share]);
             }
     for (const block of blocks) {
         const [, k, n] = block, around = [];
@@ -353,7 +358,8 @@ W.clutterCells = (model, grid, thing, below) => {
         return fate !== 'gone' && !(fate === 'stays' && model.zones.length && p[2] <= ceiling && cleared(p));
     };
     const {columns} = grid;
-    for (const [id, k, n, around] of grid.cells) {
+    for (const [id, k, n, share, around] of grid.cells) {
+        if (below && share * STEEPEST > STEEPEST_FROM_ABOVE) continue;
         const all = [k, k + n, k + n * columns, k + n * (columns + 1)].map((c) => shown(id, c));
         if (n === 1 ? all[0] : all.every((x) => x)) {
             for (let i = 1; i + 1 < around.length; i++) list.push(around[0], around[i], around[i + 1]);
@@ -406,7 +412,22 @@ W.lightVolume = (model, light, pages) => {
                     sum = W.add(sum, f);
                     count++;
                 }
-                texels.set(count ? [...W.scale(sum, 1 / count), 1] : [1, 1, 1, 1], at);
+                if (count) texels.set([...W.scale(sum, 1 / count), 1], at);
             }
+    // inside walls, and outside of the rooms, as beside them
+    const steps = [1, size[0], size[0] * size[1]];
+    const known = (k) => k >= 0 && 4 * k < texels.length && texels[4 * k + 3] > 0;
+    for (let empty = true, round = 0; empty && round < 30; round++) {
+        empty = false;
+        const found = [];
+        for (let k = 0; 4 * k < texels.length; k++) {
+            if (known(k)) continue;
+            empty = true;
+            const beside = steps.flatMap((s) => [k - s, k + s]).filter(known);
+            if (beside.length)
+                found.push([k, [0, 1, 2].map((c) => beside.reduce((s, b) => s + texels[4 * b + c], 0) / beside.length)]);
+        }
+        for (const [k, rgb] of found) texels.set([...rgb, 1], 4 * k);
+    }
     return {size, low, high, texels};
 };

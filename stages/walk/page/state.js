@@ -2,7 +2,9 @@
 'use strict';
 
 const $ = (id) => document.getElementById(id);
-const FIELD = 1.31, MOST_BYTES = 400e6, CLUTTER_VIEWS = 12, MOVING_VIEWS = 5;
+const FIELD = 1.31, CLUTTER_VIEWS = 12, MOVING_VIEWS = 5;
+// of textures of photographs that are kept: a phone ends a page that takes too much
+const MOST_BYTES = matchMedia('(pointer: coarse)').matches ? 160e6 : 400e6;
 
 W.say = (text, bad) => {
     $('told').textContent = text || '';
