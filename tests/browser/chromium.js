@@ -68,10 +68,16 @@ class Chromium {
         return ticks / 100;
     }
 
-    async close() {
+    /* All its processes write to the profile until they have ended; only then it can be removed. */
+    async close(profile = null) {
         const ended = new Promise((done) => this.process.on('exit', done));
-        this.process.kill();
-        await Promise.race([ended, new Promise((done) => setTimeout(done, 3000))]);
+        this.process.stdio[3].on('error', () => {});
+        this.send('Browser.close').catch(() => {});
+        await Promise.race([ended, new Promise((done) => setTimeout(done, 5000))]);
+        try {
+            process.kill(-this.process.pid, 'SIGKILL');
+        } catch (e) { /* none is left */ }
+        if (profile) fs.rmSync(profile, {recursive: true, force: true, maxRetries: 20, retryDelay: 100});
     }
 }
 

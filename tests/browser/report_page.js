@@ -182,8 +182,7 @@ const main = async () => {
         console.log(`# the page and its pictures: ${(size / 1e6).toFixed(2)} MB`);
         check('the_page_takes_at_most_10_MB', size <= 10e6, `${size} bytes`);
     } finally {
-        await browser.close();
-        fs.rmSync(profile, {recursive: true, force: true, maxRetries: 5, retryDelay: 200});
+        await browser.close(profile);
     }
     process.exit(failed ? 1 : 0);
 };

@@ -278,8 +278,7 @@ const main = async () => {
                 (area * 8 * 10 / 1e6).toFixed(0)} MB of pixels read and written`);
         }
     } finally {
-        await chromium.close();
-        fs.rmSync(profile, {recursive: true, force: true, maxRetries: 5, retryDelay: 200});
+        await chromium.close(profile);
     }
     process.exit(failed ? 1 : 0);
 };
