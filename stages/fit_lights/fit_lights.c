@@ -150,20 +150,37 @@ static enum status write_lights(struct job *j, const struct solved_lights *s, co
     return err->status;
 }
 
-/* Fits the lamps; then, if lamps are found that nobody marked, once more in their light. */
-static enum status solve(struct job *j, struct solved_lights *solved, const struct solve_inputs *in, struct err *err)
+static enum status find_unseen(struct job *j, struct err *err)
 {
-    if (solve_lights(solved, in, err) || !looks_for_unseen(j)) return err->status;
-    if (unseen_lamps_gather(&j->unseen, &j->field, err) ||
-        unseen_lamps_find(&j->unseen, &j->field, &j->scene, &j->model, &j->furnished, j->views, &j->params, &j->prov,
-                          err))
-        return err->status;
-    if (!j->unseen.count || !j->unseen.are_used || !j->notes.count) return ST_OK;
-    unseen_lamps_light(&j->unseen, j->indirect.at, &j->scene, &j->furnished);
-    solve_release(solved);
-    if (solve_lights(solved, in, err)) return err->status;
     return unseen_lamps_find(&j->unseen, &j->field, &j->scene, &j->model, &j->furnished, j->views, &j->params, &j->prov,
                              err);
+}
+
+/* Fits the lamps roughly and looks for lamps that nobody marked; then fits the lamps in the light of these, too. */
+static enum status find_before(struct job *j, const struct solve_inputs *in, struct err *err)
+{
+    struct light_list *lights = &j->scene.lights;
+    struct solved_lights rough = {0};
+    struct solve_inputs first = *in;
+    const size_t size = (size_t)lights->lamp_count * sizeof *lights->lamps;
+    struct lamp *lamps = malloc(size + 1);
+    if (!lamps) return err_nomem(err, "lamps", size);
+    if (size) memcpy(lamps, lights->lamps, size);
+    first.is_provisional = true;
+    if (!solve_lights(&rough, &first, err) && !unseen_lamps_gather(&j->unseen, &j->field, err) &&
+        !find_unseen(j, err) && j->unseen.are_used)
+        unseen_lamps_light(&j->unseen, j->indirect.at, &j->scene, &j->furnished);
+    if (size) memcpy(lights->lamps, lamps, size);
+    free(lamps);
+    solve_release(&rough);
+    return err->status;
+}
+
+static enum status solve(struct job *j, struct solved_lights *solved, const struct solve_inputs *in, struct err *err)
+{
+    if (looks_for_unseen(j) && find_before(j, in, err)) return err->status;
+    if (solve_lights(solved, in, err)) return err->status;
+    return j->unseen.count ? find_unseen(j, err) : ST_OK;
 }
 
 static enum status fit(struct job *j, struct err *err)
@@ -175,8 +192,8 @@ static enum status fit(struct job *j, struct err *err)
     if (!err->status && j->lamps)
         observe(&seen, &j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, &j->prov, err);
     if (!err->status) direct_light_make(&direct, &j->scene, &j->furnished, err);
-    const struct solve_inputs in = {&j->scene,      &j->notes, &seen, &direct, (const double(*)[3])j->indirect.at,
-                                    &j->model.rays, &j->params};
+    const struct solve_inputs in = {&j->scene,      &j->notes,  &seen, &direct, (const double(*)[3])j->indirect.at,
+                                    &j->model.rays, &j->params, false};
     if (!err->status && !solve(j, &solved, &in, err)) write_lights(j, &solved, &in, err);
     solve_release(&solved);
     direct_light_release(&direct);

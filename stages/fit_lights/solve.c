@@ -136,7 +136,7 @@ static void report_unseen(const struct solve_inputs *in)
             points++;
         }
         for (int i = 0; i < in->seen->count; i++) seen += in->scene->points[in->seen->items[i].point].mark == k;
-        if (seen || !points) continue;
+        if (seen || !points || in->is_provisional) continue;
         log_warn("%s:%d: %s this mark (%s %s), so it does not count; choose %s.", in->notes->path, a->line,
                  clipped ? "all views are saturated or dark at" : "no view shows", annotation_word(a->kind), a->name,
                  clipped ? "places that some exposure measures" : "places that nothing hides");
@@ -373,6 +373,7 @@ static void take_seen(struct solved_lights *s, const struct solve_inputs *in, in
     l->bound = !r->unsaturated;
     r->source = r->unsaturated ? LAMP_MEASURED : seen ? LAMP_BOUND : LAMP_UNKNOWN;
     memcpy(r->radiance_error, r->seen_error, sizeof r->seen_error);
+    if (in->is_provisional) return;
     if (r->source == LAMP_BOUND)
         log_warn("%s:%d: the lamp %s is saturated in all %d views that show it, and nothing says how bright it is, so "
                  "its radiance of %.4g %.4g %.4g is a lower bound; mark lit and unlit points.",
@@ -423,6 +424,7 @@ static void guess_cone(struct solved_lights *s, const struct solve_inputs *in, i
     const bool between = inside > 0 && outside < 0.5 * PI;
     l->beta = between ? 0.5 * (inside + outside) : 0.5 * PI;
     s->lamps[lamp].beta_error = between ? (outside - inside) / sqrt(12) : 0;
+    if (in->is_provisional) return;
     log_warn("%s:%d: the edge of the cone of the lamp %s was not found, so its beta is %.1f degrees, %s; add lines "
              "across the edge, or give beta.",
              in->notes->path, note_of_lamp(in, lamp)->line, l->name, l->beta / DEGREE,
@@ -435,7 +437,7 @@ static enum status fit_cone(struct solved_lights *s, const struct solve_inputs *
     const bool wanted = lines_of_lamp(in->scene, lamp) > 0;
     if (wanted && !lines_fit_beta(&s->lamps[lamp].beta_error, in, lamp, known, err)) return ST_OK;
     if (err->status && err->status != ST_DATA) return err->status;
-    if (err->status && !known) log_warn("%s", err->text);
+    if (err->status && !known && !in->is_provisional) log_warn("%s", err->text);
     *err = (struct err)ERR_INIT;
     if (known) return ST_OK; /* it stays as it was found, or guessed, before */
     if (wanted || note_of_lamp(in, lamp)->has_beta == QUANTITY_FIT) guess_cone(s, in, lamp);
@@ -480,9 +482,9 @@ enum status solve_lights(struct solved_lights *s, const struct solve_inputs *in,
     }
     if (list_points(s, in, err) || fit_cones(s, in, false, err)) return err->status;
     take_unfitted(s, in);
-    if (fit_radiances(s, in, PASS_PROVISIONAL, err) || fit_cones(s, in, true, err) ||
-        fit_radiances(s, in, PASS_POINTS, err))
-        return err->status;
+    if (fit_radiances(s, in, PASS_PROVISIONAL, err) || fit_cones(s, in, true, err)) return err->status;
+    if (in->is_provisional) return fit_radiances(s, in, PASS_PROVISIONAL, err);
+    if (fit_radiances(s, in, PASS_POINTS, err)) return err->status;
     for (int i = 0; i < lamps; i++) {
         if (s->lamps[i].source != LAMP_FITTED) continue;
         measure_lamp(&s->lamps[i], in, i);

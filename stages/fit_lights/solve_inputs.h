@@ -14,6 +14,7 @@ struct solve_inputs {
     const double (*indirect)[3];   /* of each point */
     const struct model_rays *rays; /* for the names of faces and the height */
     const struct fit_lights_params *params;
+    bool is_provisional; /* without intervals and warnings: the lamps are fitted again */
 };
 
 #endif

@@ -175,7 +175,7 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
         for (int c = 0; c < 3; c++) room.indirect[i][c] = indirect_at(room.scene.points[i].at);
     const struct solve_inputs in = {
         &room.scene,      &room.notes, &room.seen, &room.direct_light, (const double(*)[3])room.indirect,
-        &room.model.rays, &params};
+        &room.model.rays, &params,     false};
     if (!err->status) solve_lights(&room.solved, &in, err);
     provenance_release(&prov);
     return err->status;
