@@ -13,8 +13,10 @@
  * falls by the share LEAST, and by half of that on two faces at least: a patch of sun lies on one. Each colour is
  * fitted at that place. The standard errors are a jackknife over blocks of space, since neighbours err alike.
  *
- * Limits. A lamp stands close below a ceiling and shines down. Its size is not seen: a square of the usual size is
- * supposed. */
+ * At a bright place of a ceiling (bright_ceilings.c) the photographs show the lamp: there its place and outline are
+ * known, and it is taken if the loss falls by LEAST_BRIGHT.
+ *
+ * Limits. A lamp stands close below a ceiling and shines down. */
 #include "stages/fit_lights/unseen_fit.h"
 
 #include <math.h>
