@@ -3,8 +3,8 @@
  * Overview. The light of each square of the textured faces is gathered from the field with its lamps off: other
  * surfaces, the sky, furniture. The fitted lamps' own light comes on top. What a square's photograph shows beyond that
  * is told to unseen_fit.c, for places on ceilings that the photographs do not show, or show as bright, and that are not
- * beside a lamp that is marked. A lamp that no photograph shows is a square of the usual size. The light of all that are
- * found is added to that of the marked points, in which the marked lamps are then fitted. */
+ * beside a lamp that is marked. A lamp that no photograph shows is a square of the usual size. The light of all that
+ * are found is added to that of the marked points, in which the marked lamps are then fitted. */
 #include "stages/fit_lights/unseen_lamps.h"
 
 #include <math.h>
