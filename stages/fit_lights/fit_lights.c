@@ -208,8 +208,8 @@ static enum status run(struct job *j, struct err *err)
     return fit(j, err);
 }
 
-/* Prints what the marks of the lamps will take: light is gathered at each point. The costs are those of loft's lamps,
- * on one core of a server of 2023. */
+/* Prints what the marks of the lamps will take: light is gathered at each point, and on faces, to find lamps without
+ * marks. The costs are those of loft's lamps, on one core of a server of 2023. */
 static enum status estimate(struct job *j, struct err *err)
 {
     struct work_estimate work = {0};
@@ -222,7 +222,7 @@ static enum status estimate(struct job *j, struct err *err)
         if (a->kind == NOTE_LINE) points += LINE_POINTS;
         if (a->kind == NOTE_DISK || a->kind == NOTE_AREA) points += j->params.places;
     }
-    work_estimate_add(&work, 1 + 0.0045 * points, 300, 4e5);
+    work_estimate_add(&work, (strcmp(j->params.unseen, "no") ? 3 : 1) + 0.0045 * points, 300, 4e5);
     work_estimate_print(stdout, &work);
     return ST_OK;
 }
