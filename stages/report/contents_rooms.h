@@ -54,6 +54,5 @@ struct rooms_sources {
  * model. What cannot be read becomes a note. ST_NOMEM. */
 enum status rooms_read(struct rooms *rooms, const struct rooms_sources *from, struct err *err);
 void rooms_release(struct rooms *rooms);
-void rooms_look_release(struct room_look *look);
 
 #endif

@@ -40,6 +40,8 @@ enum status rooms_note(struct rooms *rooms, const char *what, const struct err *
 
 struct view_change *rooms_change_of(const struct rooms_reading *r, int change, int lens);
 
+void rooms_look_release(struct room_look *look);
+
 /* Fills rooms->photos, without pictures, and counts the photos that changes alter. ST_NOMEM. */
 enum status rooms_choose(struct rooms_reading *r, struct err *err);
 
