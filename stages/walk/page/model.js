@@ -277,7 +277,7 @@ W.clutterGrid = (scene, view, grid, bytes) => {
 
 // How steep a surface may be towards the view that shows it, as a slope. What is steeper joins the edge of a thing with
 // what is behind it, and would be a rag when it is seen from elsewhere.
-const STEEPEST = 8, STEEPEST_FROM_ABOVE = 3;
+const STEEPEST = 8, STEEPEST_FROM_ABOVE = 5;
 
 // Squares of a grid that lie on one surface, which changes by less than the share `steep` from one point to the next:
 // [thing, first point, side in cells, share of `steep`, points around], as large as their surface is flat there, which a
