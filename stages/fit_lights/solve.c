@@ -595,7 +595,7 @@ enum status solve_write(const struct solved_lights *s, const struct solve_inputs
     for (int k = 0; !err->status && k < s->mark_count; k++) write_mark(s, in, k, f.fp);
     for (int i = 0; !err->status && i < s->point_count; i++)
         if (s->points[i].kind != POINT_ACROSS) write_point(s, in, i, f.fp);
-    if (!err->status) unseen_lamps_print(unseen, model, f.fp);
+    if (!err->status) unseen_lamps_print(unseen, model, &in->scene->lights, f.fp);
     if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);
     return err->status;

@@ -262,13 +262,43 @@ void unseen_lamps_report(const struct unseen_lamps *u, const struct lit_model *m
     }
 }
 
-void unseen_lamps_print(const struct unseen_lamps *u, const struct lit_model *model, FILE *to)
+/* The name of the k-th: of unseen1, unseen2, ... that no lamp of the list has. */
+static void name_lamp(char *name, size_t size, const struct light_list *lights, int k)
+{
+    for (int n = 1; k >= 0; n++) {
+        bool is_new = true;
+        snprintf(name, size, "unseen%d", n);
+        for (int i = 0; i < lights->lamp_count; i++) is_new &= strcmp(name, lights->lamps[i].name) != 0;
+        k -= is_new;
+    }
+}
+
+static double area_of(const struct unseen_lamps *u, const struct unseen_lamp *l)
+{
+    return l->place.x > 0 ? 4 * l->place.x * l->place.y : u->side * u->side;
+}
+
+/* The line of a lamp that is used, as those of other lamps. */
+static void print_lamp(const struct unseen_lamps *u, int k, const struct light_list *lights, FILE *to)
+{
+    const struct unseen_lamp *l = &u->lamps[k];
+    char name[32];
+    name_lamp(name, sizeof name, lights, k);
+    fprintf(to, "lamp %s unseen", name);
+    for (int c = 0; c < 3; c++) fprintf(to, " %.9g", l->intensity[c] / area_of(u, l));
+    for (int c = 0; c < 3; c++) fprintf(to, " %.4g", CONFIDENCE * l->error[c] * l->intensity[c] / area_of(u, l));
+    fprintf(to, " beta 90 0 exponent 0 0\n");
+}
+
+void unseen_lamps_print(const struct unseen_lamps *u, const struct lit_model *model, const struct light_list *lights,
+                        FILE *to)
 {
     for (int k = 0; k < u->count; k++) {
         const struct unseen_lamp *l = &u->lamps[k];
         double pixel[2] = {0, 0};
         const struct vec3 normal = normal_of(u, l);
         const char *photo = best_photo(pixel, model, l->brightest, normal);
+        if (u->are_used) print_lamp(u, k, lights, to);
         fprintf(
             to,
             "unseen %d at %.6g %.6g %.6g intensity %.6g %.6g %.6g %.3g %.3g %.3g gain %.3g on %s at %.6g %.6g %.6g by "
@@ -280,25 +310,14 @@ void unseen_lamps_print(const struct unseen_lamps *u, const struct lit_model *mo
     }
 }
 
-/* The first of unseen1, unseen2, ... that no lamp of the list has. */
-static void name_lamp(char *name, size_t size, const struct light_list *lights)
-{
-    bool is_new = false;
-    for (int n = 1; !is_new; n++) {
-        snprintf(name, size, "unseen%d", n);
-        is_new = true;
-        for (int i = 0; i < lights->lamp_count; i++) is_new &= strcmp(name, lights->lamps[i].name) != 0;
-    }
-}
-
 enum status unseen_lamps_add(const struct unseen_lamps *u, struct light_list *lights, struct err *err)
 {
     for (int k = 0; u->are_used && k < u->count; k++) {
         const struct unseen_lamp *l = &u->lamps[k];
         const double x = l->place.x > 0 ? l->place.x : u->side / 2, y = l->place.x > 0 ? l->place.y : x;
-        const double area = 4 * x * y;
+        const double area = area_of(u, l);
         char name[32];
-        name_lamp(name, sizeof name, lights);
+        name_lamp(name, sizeof name, lights, 0);
         if (array_append(&lights->lamps, (size_t)lights->lamp_count, sizeof *lights->lamps, "lamps", err))
             return err->status;
         lights->lamps[lights->lamp_count] =

@@ -29,7 +29,8 @@ void unseen_lamps_light(const struct unseen_lamps *u, double (*indirect)[3], con
 /* Says what was found, with the photograph that shows it best, and what to write into lights.txt. */
 void unseen_lamps_report(const struct unseen_lamps *u, const struct lit_model *model);
 /* Lines of fit.txt. */
-void unseen_lamps_print(const struct unseen_lamps *u, const struct lit_model *model, FILE *to);
+void unseen_lamps_print(const struct unseen_lamps *u, const struct lit_model *model, const struct light_list *lights,
+                        FILE *to);
 /* Adds them to the list as unseen1, unseen2 and so on. */
 enum status unseen_lamps_add(const struct unseen_lamps *u, struct light_list *lights, struct err *err);
 void unseen_lamps_release(struct unseen_lamps *u);

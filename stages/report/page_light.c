@@ -40,7 +40,8 @@ static const char *source_of(const struct lamp_card *card)
         {"given", "as stated in the marks"},
         {"fitted", "worked out from how much brighter the lit places are than the unlit ones"},
         {"measured", "read off the lamp's own picture"},
-        {"bound", "at least this: the lamp is overexposed in every photograph"}};
+        {"bound", "at least this: the lamp is overexposed in every photograph"},
+        {"unseen", "worked out from the light that it throws; nobody marked it"}};
     for (size_t i = 0; i < sizeof words / sizeof *words; i++)
         if (!strcmp(card->source, words[i][0])) return words[i][1];
     return "unknown";
