@@ -6,7 +6,7 @@
 
 static void put_door(FILE *to, bool is_there, const char *address, const char *words, bool quiet)
 {
-    if (is_there) fprintf(to, "<li><a%s href=\"%s\">%s</a></li>\n", quiet ? " class=\"quiet\"" : "", address, words);
+    if (is_there) fprintf(to, "<li%s><a href=\"%s\">%s</a></li>\n", quiet ? " class=\"quiet\"" : "", address, words);
 }
 
 static int count_films(const struct contents *c)
