@@ -1,10 +1,10 @@
 /* unseen_lamps.c - see unseen_lamps.h.
  *
  * Overview. The light of each square of the textured faces is gathered from the field with its lamps off: other
- * surfaces, the sky, furniture. The fitted lamps' own light comes on top. What a square's photograph shows beyond that
- * is told to unseen_fit.c, for places on ceilings that the photographs do not show, or show as bright, and that are not
- * beside a lamp that is marked. A lamp that no photograph shows is a square of the usual size. The light of all that
- * are found is added to that of the marked points, in which the marked lamps are then fitted. */
+ * surfaces, the sky, furniture. The fitted lamps' own light comes on top. From what a square's photograph shows beyond
+ * that, unseen_fit.c finds lamps. It looks only at places on ceilings that photographs do not show, or show as bright,
+ * and that have no marked lamp beside them. A lamp that no photograph shows is a square of the usual size. The light of
+ * all lamps that are found is added to that of the marked points, in which the marked lamps are then fitted. */
 #include "stages/fit_lights/unseen_lamps.h"
 
 #include <math.h>

@@ -71,7 +71,7 @@ enum status page_films(struct page *page, const struct contents *c, struct err *
     for (int i = 0; i < c->effect_count; i++) films += c->effects[i].video != NULL;
     if (!films && c->model_count) return ST_OK;
     fputs("<section id=\"films\" aria-labelledby=\"films-title\">\n<h2 id=\"films-title\">Films</h2>\n", to);
-    if (!films) fputs("<p>There is no film yet.</p>\n", to);
+    if (!films) fputs("<p>No film has been made yet.</p>\n", to);
     fprintf(to, "<div class=\"films%s\">\n", films == 1 ? " few" : "");
     for (int i = 0; i < c->effect_count; i++)
         if (put_move(page, c, &c->effects[i], err)) return err->status;

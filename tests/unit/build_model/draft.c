@@ -1,46 +1,21 @@
 /* draft.c - where an edited room takes the colours of a photo's pixels: a room of 4 x 3 x 2.5 m, seen by two cameras
  * that look south, a from (2, 1.5, 1.25) and b from (0.9, 1.2, 0.6). A point x, y, z is at
  * u = 200 + 200 (cx - x) / (cy - y) and v = 150 + 200 (cz - z) / (cy - y). */
-#include "stages/build_model/live/live.h"
-
 #include <math.h>
 #include <string.h>
 
-#include "tests/unit/scratch.h"
+#include "tests/unit/build_model/live_room.h"
 
-static const char script_text[] = "remodel-script 1\n"
-                                  "wall south from 4 0 to 0 0\nwall west from 0 0 to 0 3\n"
-                                  "wall north from 0 3 to 4 3\nwall east from 4 3 to 4 0\n"
-                                  "join south west north east south\nroom main south west north east\n"
-                                  "window sunny on south from 1 1 to 3 2\n"
-                                  "box chest from 1.9 0.5 to 2.1 0.7 top 0.8\n";
+static const char script_text[] = LIVE_ROOM "box chest from 1.9 0.5 to 2.1 0.7 top 0.8\n";
 enum { A, B, WIDTH = 400, HEIGHT = 300 };
 enum { PIXEL, COLOUR, UNSEEN };
 static const double eyes[2][3] = {{2, 1.5, 1.25}, {0.9, 1.2, 0.6}};
 
 static int make_files(void **state)
 {
-    if (scratch_make(state)) return -1;
-    mkdir(scratch_path("views"), 0777);
-    mkdir(scratch_path("edits"), 0777);
-    scratch_write("views/cameras.txt", "1 PINHOLE 400 300 200 200 200 150\n");
-    /* rows of the rotation: right -x, down -z, forward -y */
-    scratch_write("views/images.txt", "1 0 0 -0.70710678118654757 0.70710678118654757 2 1.25 1.5 1 a.exr\n\n"
-                                      "2 0 0 -0.70710678118654757 0.70710678118654757 0.9 0.6 1.2 1 b.exr\n\n");
-    scratch_write("views/points3D.txt", "");
-    scratch_write("views/lenses.txt", "remodel-lenses 1\na a PINHOLE 400 300 200 200 200 150 turn 1 0 0 0\n"
-                                      "b b PINHOLE 400 300 200 200 200 150 turn 1 0 0 0\n");
-    scratch_write("axes.txt", "remodel-axes 1\nrotation 1 0 0 0\ntranslation 0 0 0\nscale 1 metres\nceiling 2.5\n"
-                              "thickness none\nerror tilt 0\nerror heading 0\nerror floor 0\nerror ceiling 0\n"
-                              "error scale 0\n");
-    scratch_write("model.txt", script_text);
-    return 0;
-}
-
-static int end(void **state)
-{
-    live_end();
-    return scratch_remove(state);
+    return live_room_make(state, script_text,
+                          "1 " LIVE_SOUTH "2 1.25 1.5 1 a.exr\n\n2 " LIVE_SOUTH "0.9 0.6 1.2 1 b.exr\n\n",
+                          "remodel-lenses 1\na a" LIVE_LENS "b b" LIVE_LENS);
 }
 
 static void where(double at[2], int photo, double x, double y, double z)
@@ -205,5 +180,5 @@ int main(void)
         cmocka_unit_test(two_photos_share_places),
         cmocka_unit_test(without_a_model_there_is_no_draft),
     };
-    return cmocka_run_group_tests_name("draft", tests, make_files, end);
+    return cmocka_run_group_tests_name("draft", tests, make_files, live_room_end);
 }

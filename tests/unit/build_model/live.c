@@ -1,36 +1,14 @@
 /* live.c - what a page calls: a room of 4 x 3 x 2.5 m, seen by a camera in its middle that looks south. */
-#include "stages/build_model/live/live.h"
-
 #include <math.h>
 
-#include "tests/unit/scratch.h"
+#include "tests/unit/build_model/live_room.h"
 
-static const char script_text[] = "remodel-script 1\n"
-                                  "wall south from 4 0 to 0 0\nwall west from 0 0 to 0 3\n"
-                                  "wall north from 0 3 to 4 3\nwall east from 4 3 to 4 0\n"
-                                  "join south west north east south\nroom main south west north east\n"
-                                  "window sunny on south from 1 1 to 3 2\n";
+static const char script_text[] = LIVE_ROOM;
 
 static int make_files(void **state)
 {
-    if (scratch_make(state)) return -1;
-    mkdir(scratch_path("views"), 0777);
-    /* rows of the rotation: right -x, down -z, forward -y */
-    scratch_write("views/cameras.txt", "1 PINHOLE 400 300 200 200 200 150\n");
-    scratch_write("views/images.txt", "1 0 0 -0.70710678118654757 0.70710678118654757 2 1.25 1.5 1 a.exr\n\n");
-    scratch_write("views/points3D.txt", "");
-    scratch_write("views/lenses.txt", "remodel-lenses 1\na a PINHOLE 400 300 200 200 200 150 turn 1 0 0 0\n");
-    scratch_write("axes.txt", "remodel-axes 1\nrotation 1 0 0 0\ntranslation 0 0 0\nscale 1 metres\nceiling 2.5\n"
-                              "thickness none\nerror tilt 0\nerror heading 0\nerror floor 0\nerror ceiling 0\n"
-                              "error scale 0\n");
-    scratch_write("model.txt", script_text);
-    return 0;
-}
-
-static int end(void **state)
-{
-    live_end();
-    return scratch_remove(state);
+    return live_room_make(state, script_text, "1 " LIVE_SOUTH "2 1.25 1.5 1 a.exr\n\n",
+                          "remodel-lenses 1\na a" LIVE_LENS);
 }
 
 static void begin(void)
@@ -129,5 +107,5 @@ int main(void)
         cmocka_unit_test(pixels_and_places_belong_together),
         cmocka_unit_test(edges_are_seen_or_hidden),
     };
-    return cmocka_run_group_tests_name("live", tests, make_files, end);
+    return cmocka_run_group_tests_name("live", tests, make_files, live_room_end);
 }

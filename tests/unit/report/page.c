@@ -41,7 +41,7 @@ static void an_empty_scene_has_a_page_for_people(void **state)
     char *page = people_page("<b>&");
     (void)state;
     assert_contains(page, "<h1>&lt;b&gt;&amp;</h1>");
-    assert_contains(page, "There is no film yet.");
+    assert_contains(page, "No film has been made yet.");
     assert_contains(page, "No photographs are listed yet.");
     assert_contains(page, "<a href=\"page/numbers.html\">How it was made, in numbers</a>");
     assert_lacks(page, "id=\"rooms\"");
