@@ -27,14 +27,14 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/light/ceiling_places.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
 #include "stages/bake_outdoors/sun_fit.h"
 
-enum { SQUARES = 2000, MAX_LAMPS = 256, MOST_RAYS = 8192, STEPS = 20, SWEEPS = 100, FEW = 3, MAX_STOREYS = 16 };
+enum { SQUARES = 2000, MAX_LAMPS = 256, MOST_RAYS = 8192, STEPS = 20, SWEEPS = 100, FEW = 3 };
 static const double SPACING = 0.18; /* of the model's height: of the grid, at least */
 static const double BELOW = 0.04;   /* of a room's height: distance of a lamp from the ceiling */
-static const double ROOM = 0.4;     /* of the model's height: lower spaces are no rooms */
 static const double NEAREST = 0.15; /* of the model's height: lamps do not light what is nearer */
 static const double TARGET = 0.03;  /* relative error of the known light; more noise in it would pass for lamps */
 static const double NOISE = 0.15;   /* of a texture, a logarithm */
@@ -73,33 +73,13 @@ struct rgb sun_lamps_irradiance(const struct sun_lamps *l, const struct model_ra
 
 /* --------------------------------------------------------------------------------------------------------- the grid */
 
-/* Adds a lamp below each ceiling that a line upwards meets. Going up it leaves a floor, then enters a ceiling. */
-static void add_lamps_above(struct sun_lamps *l, const struct model_rays *model, double x, double y, double bottom)
-{
-    const double least = ROOM * model_rays_height(model);
-    struct vec3 from = vec3_make(x, y, bottom);
-    double floor = INFINITY;
-    for (int k = 0; k < MAX_STOREYS && l->count < MAX_LAMPS; k++) {
-        struct ray_hit hit;
-        if (!ray_scene_hit(&model->rays, from, vec3_make(0, 0, 1), &hit)) return;
-        const double height = hit.point.z - floor;
-        if (hit.front && height >= least) l->at[l->count++] = vec3_make(x, y, hit.point.z - BELOW * height);
-        floor = hit.front ? INFINITY : hit.point.z;
-        from.z = hit.point.z + 4 * model->rays.epsilon;
-    }
-}
-
 static enum status list_lamps(struct sun_lamps *l, const struct model_rays *model, struct err *err)
 {
-    struct vec3 low, high;
-    model_rays_bounds(model, &low, &high);
-    const double wide = high.x - low.x, deep = high.y - low.y;
-    const double spacing = fmax(SPACING * (high.z - low.z), sqrt(wide * deep / MAX_LAMPS));
+    const struct ceiling_grid grid = {.rays = model, .spacing = SPACING, .below = BELOW, .most = MAX_LAMPS};
     l->at = malloc(MAX_LAMPS * sizeof *l->at);
     l->intensity = calloc(MAX_LAMPS, sizeof *l->intensity);
     if (!l->at || !l->intensity) return err_nomem(err, "lamps", MAX_LAMPS * sizeof *l->intensity);
-    for (double y = low.y + spacing / 2; y < high.y; y += spacing)
-        for (double x = low.x + spacing / 2; x < high.x; x += spacing) add_lamps_above(l, model, x, y, low.z - spacing);
+    l->count = ceiling_places_list(l->at, &grid);
     return ST_OK;
 }
 

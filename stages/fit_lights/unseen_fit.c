@@ -24,6 +24,7 @@
 #include <string.h>
 
 #include "common/base/parallel.h"
+#include "common/light/ceiling_places.h"
 #include "common/light/colour.h"
 #include "common/math/weighted.h"
 
@@ -32,7 +33,6 @@ enum {
     SCAN = 9,
     NARROW = 12,
     FEW = 3,
-    MAX_STOREYS = 16,
     BLOCKS = 8,
     LUMINANCE = 3,
     FACES = 2,
@@ -40,7 +40,6 @@ enum {
 };
 static const double SPACING = 0.14;      /* of the model's height: of the grid, at least */
 static const double BELOW = 0.01;        /* of a room's height: distance of a lamp from the ceiling */
-static const double ROOM = 0.4;          /* of the model's height: lower spaces are no rooms */
 static const double NEAREST = 0.1;       /* of the model's height: nearer squares tell nothing */
 static const double NOISE = 0.1;         /* of a texture, a logarithm */
 static const double LEAST_BRIGHT = 0.02; /* the same of one that photographs show */
@@ -188,41 +187,9 @@ static void fit_intensity(struct trial *t, int colour)
 
 /* ----------------------------------------------------------------------------------------------------------- places */
 
-/* The places below each ceiling that a line upwards meets. Going up it leaves a floor, then enters a ceiling. */
-static void add_places_above(struct vec3 *list, int *count, const struct unseen_light *l, double x, double y,
-                             double bottom)
+static struct ceiling_grid grid_of(const struct unseen_light *l)
 {
-    const double least = ROOM * model_rays_height(l->rays);
-    struct vec3 from = vec3_make(x, y, bottom);
-    double floor = INFINITY;
-    for (int k = 0; k < MAX_STOREYS && *count < MOST_PLACES; k++) {
-        struct ray_hit hit;
-        if (!ray_scene_hit(&l->rays->rays, from, vec3_make(0, 0, 1), &hit)) return;
-        const double height = hit.point.z - floor;
-        const struct vec3 at = vec3_make(x, y, hit.point.z - BELOW * height);
-        if (hit.front && height >= least && l->may_be(l->ctx, at)) list[(*count)++] = at;
-        floor = hit.front ? INFINITY : hit.point.z;
-        from.z = hit.point.z + 4 * l->rays->rays.epsilon;
-    }
-}
-
-static double spacing_of(const struct unseen_light *l)
-{
-    struct vec3 low, high;
-    model_rays_bounds(l->rays, &low, &high);
-    return fmax(SPACING * (high.z - low.z), sqrt((high.x - low.x) * (high.y - low.y) / MOST_PLACES));
-}
-
-static int list_places(struct vec3 list[MOST_PLACES], const struct unseen_light *l)
-{
-    struct vec3 low, high;
-    const double spacing = spacing_of(l);
-    int count = 0;
-    model_rays_bounds(l->rays, &low, &high);
-    for (double y = low.y + spacing / 2; y < high.y; y += spacing)
-        for (double x = low.x + spacing / 2; x < high.x; x += spacing)
-            add_places_above(list, &count, l, x, y, low.z - spacing);
-    return count;
+    return (struct ceiling_grid){l->rays, SPACING, BELOW, MOST_PLACES, l->may_be, l->ctx};
 }
 
 /* ----------------------------------------------------------------------------------------------------------- search */
@@ -291,7 +258,8 @@ static void try_range(void *ctx, size_t begin, size_t end, int thread)
 static void refine(struct trial *best, struct trial *other)
 {
     const struct unseen_light *l = best->l;
-    const double spacing = spacing_of(l);
+    const struct ceiling_grid grid = grid_of(l);
+    const double spacing = ceiling_places_spacing(&grid);
     for (double step = spacing / 2; step > spacing / FINEST; step /= 2)
         for (int k = 0; k < 4; k++) {
             other->at = best->at;
@@ -393,7 +361,8 @@ enum status unseen_fit(struct unseen_lamp *lamps, int *count, struct unseen_ligh
 {
     struct vec3 places[MOST_PLACES];
     struct search s = {.l = l};
-    const int found = list_places(places, l);
+    const struct ceiling_grid grid = grid_of(l);
+    const int found = ceiling_places_list(places, &grid);
     *count = 0;
     if (!find_logs(&s, err) && !trials_make(&s, found + 1, err)) { /* one more, for refine() */
         bool more = found > 0;
