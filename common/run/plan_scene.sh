@@ -4,8 +4,6 @@
 # list, and stages that have no estimate ("?").
 
 matches_word() { case " $2 " in *" $1 "*) ;; *) return 1 ;; esac; } # WORD LIST
-# commands_to_come: one a line, of all steps up to the goal
-commands_to_come() { graph -n -s ${choose:+choice} "$goal" | sed -e ':a' -e '/\\$/{N;s/\\\n//;ba' -e '}' | grep -a 'run_stage.sh [a-z]* ' || true; }
 
 # plan_row STAGE: its commands are in $work/of.STAGE. Numbers for the table, "?" for what is not known
 plan_row()
@@ -27,6 +25,7 @@ plan_row()
 print_plan()
 {
     local stage
+    print_graph write
     commands_to_come >"$work/commands"
     for stage in $REMODEL_STAGES; do
         grep -aE "run_stage.sh [a-z]+ $stage " "$work/commands" >"$work/of.$stage" || continue

@@ -34,6 +34,9 @@ print_graph() { REMODEL_FILMS="${effects[*]}" REMODEL_CHOOSE=$choose "$bin/print
 # execute ...: Make, on the graph as it was printed; graph ...: on that of now
 execute() { "${make[@]}" PHASE=graph O="$O" "$@"; }
 graph() { print_graph write && execute "$@"; }
+# commands_to_come [OPTION...]: one a line, of all steps up to the goal, on the graph as it was printed
+# shellcheck disable=SC2120 # status_scene.sh passes -B
+commands_to_come() { execute -n -s "$@" ${choose:+choice} "$goal" | sed -e ':a' -e '/\\$/{N;s/\\\n//;ba' -e '}' | grep -a 'run_stage.sh [a-z]* ' || true; }
 # one TARGET...: made here, with all cores
 one() { graph $quiet -j1 T="$cores" "$@"; }
 
@@ -60,11 +63,10 @@ farm()
     fi
     wide=$((count < max_jobs ? count : max_jobs))
     threads=$((cores / wide))
-    date +%s >"$work/$1.tally"
-    export REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$count
+    begin_tally "$count"
     if [ -n "$(cut -sf3 "$plan")" ]; then farm_plan "$plan" "$2" "$wide" "$threads"
     else execute $quiet -j"$wide" T="$threads" "$2"; fi
-    unset REMODEL_TALLY REMODEL_COUNT
+    unset REMODEL_TALLY
 }
 # farm_plan PLAN TARGET WIDE THREADS: runs the plan of a stage whose processes make several pieces of work, WIDE processes at a
 # time, each with VIEWS_PER_JOB pieces, or a quarter of its share, at most 50. Like Make, begins no other once a piece has failed
@@ -88,10 +90,12 @@ farm_frames()
     if [ "$jobs" = slurm ]; then farm "$1" "$2" "$cores" 1; else
         local plan=$work/$1.plan
         plan_of "$2" "$cores" >"$plan"
-        date +%s >"$work/$1.tally"
-        REMODEL_TALLY=$work/$1.tally REMODEL_COUNT=$(wc -l <"$plan") one "$2"
+        begin_tally "$(wc -l <"$plan")"
+        one "$2"
+        unset REMODEL_TALLY
     fi
 }
+. common/run/run_record.sh
 # is_function NAME
 is_function() { declare -F "$1" >/dev/null; }
 # hooks NAME: NAME_STAGE of every stage that has it
@@ -125,9 +129,9 @@ effects=() choose=
 hooks begin
 print_graph check
 hooks check
-# a plan is a dry run whose commands are counted
+# a plan and a status are dry runs whose commands are counted
 planning=
-[ "$goal" != plan ] || { planning=yes dry=n goal=${REMODEL_TO:-all}; }
+case $goal in plan | status) planning=$goal dry=n goal=${REMODEL_TO:-all} ;; esac
 
 # a lens is said once: later runs find it in scene.cfg
 if [ -n "${REMODEL_LENS-}" ]; then
@@ -159,7 +163,7 @@ fi
 mkdir -p "$S"
 if [ "$dry" != n ] && [ "$goal" != why ]; then
     exec 9>"$S/.lock"
-    if ! flock -n 9; then
+    if ! flock -w 1 9; then # `make status` looks at it for a moment
         echo "Another run works on scene $scene (or a process that an ended run left behind). Wait until it ends, or end it, and try again." >&2
         exit 1
     fi
@@ -167,6 +171,11 @@ fi
 if [ "$dry" != n ] || [ -n "$planning" ]; then
     work=$(mktemp -d "${TMPDIR:-/tmp}/remodel.XXXXXX")
     trap 'rm -rf "$work"' EXIT
+fi
+[ "$planning" != status ] || . common/run/status_scene.sh
+if [ "$dry" != n ] && [ "$goal" != why ]; then
+    record_run "$([ "$goal" = all ] && echo report || echo "$goal")"
+    trap 'end_run "$?"; rm -rf "$work"' EXIT
 fi
 
 hooks prepare
@@ -180,7 +189,10 @@ if [ "$goal" = why ]; then
     exit 0
 fi
 [ "$goal" != all ] || goal=report
-[ -z "$planning" ] || . common/run/plan_scene.sh
+case $planning in
+plan) . common/run/plan_scene.sh ;;
+status) print_graph write; print_status; exit 0 ;;
+esac
 if [ "$dry" = n ]; then
     [ -e "$O/views/views.mk" ] || echo "# not known before structure from motion has run: which views there are"
     first=()
@@ -190,7 +202,9 @@ if [ "$dry" = n ]; then
 fi
 
 steps=$(print_graph steps "$goal")
+n=0
 while read -r stage run step <&3; do
+    record_step $((++n)) "$(wc -l <<<"$steps")" "$stage" "$step"
     if is_function "run_$step"; then "run_$step"
     elif [ "$run" = farm ]; then farm "$stage" "$step"
     elif [ "$run" = wide ]; then farm_frames "$stage" "$step"

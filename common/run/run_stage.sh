@@ -2,7 +2,7 @@
 # run_stage.sh live|quiet|silent STAGE ITEM FOLDER COMMAND... - runs one stage; its words go to FOLDER/log/STAGE.ITEM.log.
 #
 # live: they are shown as they come. quiet: its warnings, and one line when the stage has ended, with the time left when REMODEL_TALLY
-# (a file, begun by run_scene.sh) and REMODEL_COUNT say how many there are. silent: not even that. A failure shows the log's end; the product
+# (a file, begun by run_record.sh) says how many there are. silent: not even that. A failure shows the log's end; the product
 # that was there before is left alone.
 set -uo pipefail
 mode=$1 stage=$2 item=$3 folder=$4; shift 4
@@ -10,6 +10,8 @@ mode=$1 stage=$2 item=$3 folder=$4; shift 4
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
 mkdir -p "$folder/log"
 log=$folder/log/$stage.$item.log
+failed=$folder/log/$stage.$item.failed # for `make status`
+rm -f "$failed"
 if [ "$mode" = live ]; then
     "$@" 2>&1 >/dev/null | tee "$log" >&2
     rc=${PIPESTATUS[0]}
@@ -18,6 +20,7 @@ else
     rc=$?
 fi
 if [ "$rc" -ne 0 ]; then
+    echo "$rc" >"$failed"
     {
         [ "$rc" -le 128 ] || echo "$stage: $item was ended by signal $((rc - 128))$([ "$rc" -ne 137 ] || echo ' (killed: perhaps there was not enough memory)')."
         [ "$mode" = live ] || { echo "$stage: $item failed; the end of $log says:"; tail -n 5 "$log" | sed 's/^/    /'; }
@@ -28,10 +31,10 @@ fi
 grep -a '^[a-z_]*: warning: ' "$log" >&2 || true
 if [ -n "${REMODEL_TALLY-}" ] && [ -e "$REMODEL_TALLY" ]; then
     echo "$item" >>"$REMODEL_TALLY"
-    { read -r began; done=$(wc -l); } <"$REMODEL_TALLY"
+    { read -r began count; done=$(wc -l); } <"$REMODEL_TALLY"
     now=$(date +%s)
-    left=$(((now - began) * (REMODEL_COUNT - done) / (done > 0 ? done : 1)))
-    printf '%s %d/%d %s, about %d:%02d left\n' "$stage" "$done" "$REMODEL_COUNT" "$item" $((left / 60)) $((left % 60)) >&2
+    left=$(((now - began) * (count - done) / (done > 0 ? done : 1)))
+    printf '%s %d/%d %s, about %d:%02d left\n' "$stage" "$done" "$count" "$item" $((left / 60)) $((left % 60)) >&2
 else
     printf '%s %s\n' "$stage" "$item" >&2
 fi

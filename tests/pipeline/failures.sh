@@ -97,6 +97,8 @@ a_killed_stage_leaves_no_product_and_is_run_again()
     [ "$caught" ] && [ "$rc" -ne 0 ] || { cat log; fail "make did not fail"; }
     grep -q 'signal 9' log || { cat log; fail "the message does not name the signal"; }
     [ ! -e out/large/depth/photo_3.exr ] || fail "there is a half-made product"
+    make -s DEPS=manual SCENE=large status TO=depth >log 2>&1
+    grep -q '^large: the run towards depth failed at .*, in step [0-9]* of [0-9]* (depth)$' log && grep -q '^failed: segment_depth photo_3; out/large/log/segment_depth.photo_3.log ends with:$' log || { cat log; fail "status of a run that failed"; }
     make -s DEPS=manual SCENE=large depth >log 2>&1 || { cat log; fail "make after it"; }
     [ "$want" = "$(sha256sum out/large/depth/photo_3.exr)" ] || fail "other bytes"
 }

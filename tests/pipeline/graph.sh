@@ -8,12 +8,15 @@ run_scene() { make -s DEPS=manual SCENE=t "$@" 2>&1; }
 
 chain_from_photos_to_video()
 {
-    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t >first.log 2>&1 || { cat first.log; fail "make failed"; }
+    make -s DEPS=manual status | matches '^No run has begun. make PHOTOS=DIR SCENE=NAME makes a scene.$' || fail "status without a scene"
+    make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t ON_DONE='echo "$REMODEL_SCENE $REMODEL_FOLDER $REMODEL_RESULT" >told; false' >first.log 2>&1 || { cat first.log; fail "make failed"; }
     [ -s out/t/parallax/establishing_dolly/video.mp4 ] || fail "no video"
     [ -s out/t/index.html ] || fail "no page"
     grep -qE '100\.0 % known, [0-9.]+ % inherited' out/t/page/numbers.html || fail "the page does not show how much depth is inherited"
     grep -q 'Inherited depth.*most in photo_[0-9] (' out/t/page/numbers.html || fail "the page does not name the views with the most inherited depth"
-    tail -n 2 first.log | matches 'video  out/t/parallax/establishing_dolly/video.mp4' || fail "the run does not end with the video's path"
+    grep -qx 't out/t done' told || fail "ON_DONE was not run, or not told how the run ended"
+    tail -n 1 first.log | matches 'ON_DONE: the command ended with status 1; the run itself: done' || fail "the command's failure is not said"
+    tail -n 3 first.log | matches 'video  out/t/parallax/establishing_dolly/video.mp4' || fail "the run does not end with the video's path"
     n=$(ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames,pix_fmt,codec_name,width,height -of csv=p=0 out/t/parallax/establishing_dolly/video.mp4)
     [ "$n" = "h264,160,120,yuv420p,6" ] || fail "the video is $n, wanted h264,160,120,yuv420p,6"
 }
@@ -27,6 +30,9 @@ a_second_make_does_nothing_even_after_a_comment_in_a_config()
     diff a b || fail "a second make remade something"
     run_scene why | matches 'Nothing is stale' || fail "make why finds stale products"
     [ -z "$(run_scene -n report | grep run_stage)" ] || fail "make -n would run something"
+    run_scene status >log
+    grep -q '^t: the run towards report ended well at ' log && grep -qx 'Nothing is stale.' log || { cat log; fail "status of a scene that is made"; }
+    awk '$1 == "segment_depth" && $2 > 0 && $3 == 0 && $4 == 0 { seen = 1 } END { exit !seen }' log || { cat log; fail "status of its depth"; }
 }
 
 a_parameter_redoes_its_stage_and_what_follows()
@@ -254,7 +260,13 @@ a_second_run_at_the_same_time_is_refused()
     exec 8>out/t/.lock; flock 8
     if run_scene >log 2>&1 8>&-; then fail "the second run went on"; fi
     grep -q 'Another run works on scene t' log || { cat log; fail "no message about the other run"; }
+    # a run that has made two of five pieces of its second step, each in ten seconds
+    (S=out/t O=out/t jobs=local; . common/run/run_record.sh; record_run depth; record_step 2 3 segment_depth depth; begin_tally 5)
+    printf '%s 5\na\nb\n' "$(($(date +%s) - 20))" >out/t/log/run.tally
+    make -s DEPS=manual status >log 2>&1 8>&-
+    grep -qE '^t: at work towards depth since .*, in out/t, in step 2 of 3 \(depth\), 2 of 5 pieces, about (2[89]|3[0-3]) s left of the step$' log || { cat log; fail "status of a run at work"; }
     exec 8>&-
+    run_scene status TO=depth | matches '^t: the run towards depth of .* was ended without a word, in step 2 of 3 (depth)$' || fail "status of a run that was killed"
 }
 
 several_goals_run_one_after_the_other()
