@@ -12,5 +12,7 @@ bool cholesky_factor(double *a, int n);
 /* b = L^-1 b, and b = L^-T b; both, one after the other, solve a x = b. */
 void cholesky_forward(const double *l, int n, double *b);
 void cholesky_backward(const double *l, int n, double *b);
+/* cholesky_forward of a vector that is 0 before its element `first`, in less time. */
+void cholesky_forward_from(const double *l, int n, int first, double *b);
 
 #endif

@@ -190,7 +190,7 @@ void fit_texture_set_excess(struct problem *p)
     for (int i = 0; i < n; i++) {
         double inverse = 0, squares = 0;
         for (int k = 0; k < n; k++) solved[k] = k == i;
-        cholesky_forward(p->factor, n, solved);
+        cholesky_forward_from(p->factor, n, i, solved);
         for (int k = i; k < n; k++) inverse += solved[k] * solved[k];
         for (int c = 0; c < 3; c++) {
             const double error = p->whitened[(ptrdiff_t)c * n + i] / inverse;

@@ -6,7 +6,7 @@
 #include "common/base/rng.h"
 #include "tests/unit/scratch.h"
 
-enum { N = 40 };
+enum { N = 43 };
 
 /* G G^T + N 1, with G of uniform numbers. */
 static void make_matrix(double a[N * N])
@@ -52,6 +52,24 @@ static void forward_and_backward_solve_the_system(void **state)
     for (int i = 0; i < N; i++) assert_true(fabs(b[i] - (i - 7.0)) < 1e-9);
 }
 
+/* Sums in the order of their columns, one row after another. */
+static void rows_side_by_side_give_the_bits_of_single_rows(void **state)
+{
+    (void)state;
+    double l[N * N], b[N], right[N];
+    make_matrix(l);
+    assert_true(cholesky_factor(l, N));
+    for (int first = 0; first < N; first++) {
+        for (int i = 0; i < N; i++) b[i] = right[i] = i < first ? 0 : 1 + 0.1 * i;
+        for (int i = 0; i < N; i++) {
+            for (int j = 0; j < i; j++) right[i] -= l[i * N + j] * right[j];
+            right[i] /= l[i * N + i];
+        }
+        cholesky_forward_from(l, N, first, b);
+        for (int i = 0; i < N; i++) assert_true(b[i] == right[i]);
+    }
+}
+
 static void a_matrix_that_is_not_positive_definite_is_refused(void **state)
 {
     (void)state;
@@ -66,6 +84,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_factor_times_its_transpose_is_the_matrix),
         cmocka_unit_test(forward_and_backward_solve_the_system),
+        cmocka_unit_test(rows_side_by_side_give_the_bits_of_single_rows),
         cmocka_unit_test(a_matrix_that_is_not_positive_definite_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
