@@ -5,6 +5,7 @@
  *         VIEWS/lenses.txt                              which views are of one photo
  *         VIEWS/VIEW.exr, IDS/VIEW.exr                  the views of which some ray leaves the model
  *         VITA                                          the textures of the unedited model: patches of sun
+ *         THINGS/things.txt, volume.exr                 the furniture, which throws shadows into them; optional
  *         REFERENCE...                                  lighting reference images
  * writes  SKY                                           the sky and the sun that were found
  *         OUT                                           an equirectangular picture; last */
@@ -37,7 +38,7 @@ static enum status check_params(const void *values, struct err *err)
 }
 
 struct job {
-    const char *model_path, *axes_path, *views, *ids, *vita, *sky, *out;
+    const char *model_path, *axes_path, *views, *ids, *vita, *things, *sky, *out;
     struct cli_list references;
     struct outdoors_params params;
     struct provenance prov;
@@ -176,7 +177,8 @@ static enum status complete(const struct job *j, struct outdoors *outdoors, bool
     struct outdoors_sun sun = {0};
     struct sky_fit sky = {0};
     const bool look = known && !strcmp(j->params.sun, "find");
-    if (look) outdoors_sun_find(&sun, outdoors, &j->model, j->vita, prov, err);
+    const struct outdoors_sun_files files = {j->model_path, j->vita, j->things};
+    if (look) outdoors_sun_find(&sun, outdoors, &j->model, &files, prov, err);
     if (!err->status) outdoors_guess(outdoors, sun.source != SUN_UNKNOWN ? &sun.direction : NULL, &sky, err);
     if (!err->status) outdoors_sun_add(&sun, outdoors, &j->model, err);
     if (!err->status && look && (j->vita || sun.source == SUN_SEEN)) report_sun(&sun);
@@ -222,6 +224,7 @@ int main(int argc, char **argv)
                  "lighting reference image with lens and pose; comes before the views; repeat for several"),
         CLI_STR("vita", &j.vita, CLI_OPTIONAL,
                 "folder of the textures of the unedited model, in which patches of sun are looked for"),
+        CLI_STR("things", &j.things, CLI_OPTIONAL, "folder of the things, furniture that throws shadows into them"),
         CLI_STR("sky", &j.sky, CLI_OPTIONAL, "text to write: the sky and the sun that were found"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "EXR to write"),
         CLI_PARAMS(outdoors_param_table, &j.params, check_params),

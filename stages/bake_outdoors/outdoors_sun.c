@@ -73,12 +73,26 @@ static enum outdoors_source source_at(const struct outdoors *o, struct vec3 dire
     return outdoors_sample(rgb, o, direction);
 }
 
-static enum status find_patches(struct outdoors_sun *s, const struct outdoors *o, const struct outdoors_model *model,
-                                const char *vita, struct provenance *prov, struct err *err)
+static struct atlas_scene scene_of(const struct outdoors_sun *s)
 {
-    if (field_atlas_read(&s->atlas, vita, model->rays.ids, prov, err) || list_planes(&s->planes, &model->rays, err))
+    return (struct atlas_scene){&s->furnished, &s->atlas, s->planes};
+}
+
+static enum status read_rooms(struct outdoors_sun *s, const struct outdoors_sun_files *files, struct provenance *prov,
+                              struct err *err)
+{
+    if (files->things && thing_surfaces_read(&s->things, files->things, prov, err)) return err->status;
+    s->furniture = thing_surfaces_of_field(&s->things);
+    return model_rays_read_with(&s->furnished, files->model, MODEL_WITHOUT_GLASS, &s->furniture.triangles, NULL, err);
+}
+
+static enum status find_patches(struct outdoors_sun *s, const struct outdoors *o, const struct outdoors_model *model,
+                                const struct outdoors_sun_files *files, struct provenance *prov, struct err *err)
+{
+    if (field_atlas_read(&s->atlas, files->vita, model->rays.ids, prov, err) ||
+        list_planes(&s->planes, &model->rays, err) || read_rooms(s, files, prov, err))
         return err->status;
-    const struct atlas_scene scene = {&model->rays, &s->atlas, s->planes};
+    const struct atlas_scene scene = scene_of(s);
     if (sun_search(&s->search, &scene, err) || !s->search.found) return err->status;
     s->direction = s->search.fit.direction;
     s->source = source_at(o, s->direction) == OUTDOORS_REFERENCE ? SUN_HIDDEN : SUN_PATCHES;
@@ -86,11 +100,11 @@ static enum status find_patches(struct outdoors_sun *s, const struct outdoors *o
 }
 
 enum status outdoors_sun_find(struct outdoors_sun *s, const struct outdoors *o, const struct outdoors_model *model,
-                              const char *vita, struct provenance *prov, struct err *err)
+                              const struct outdoors_sun_files *files, struct provenance *prov, struct err *err)
 {
     *s = (struct outdoors_sun){0};
-    if (see_sun(s, o, err) || s->source == SUN_SEEN || !vita) return err->status;
-    return find_patches(s, o, model, vita, prov, err);
+    if (see_sun(s, o, err) || s->source == SUN_SEEN || !files->vita) return err->status;
+    return find_patches(s, o, model, files, prov, err);
 }
 
 void outdoors_sun_release(struct outdoors_sun *s)
@@ -98,6 +112,8 @@ void outdoors_sun_release(struct outdoors_sun *s)
     sun_search_release(&s->search);
     field_atlas_release(&s->atlas);
     free(s->planes);
+    model_rays_release(&s->furnished);
+    thing_surfaces_release(&s->things);
     *s = (struct outdoors_sun){0};
 }
 
@@ -152,9 +168,10 @@ double outdoors_paint_sun(struct outdoors *o, struct vec3 direction, double radi
 enum status outdoors_sun_add(struct outdoors_sun *s, struct outdoors *o, const struct outdoors_model *model,
                              struct err *err)
 {
-    const struct atlas_scene scene = {&model->rays, &s->atlas, s->planes};
+    const struct atlas_scene scene = scene_of(s);
+    const struct sun_indoors in = {&scene, o, &s->furniture, &model->rays};
     if (s->source != SUN_PATCHES) return ST_OK;
-    if (sun_light_measure(&s->light, &scene, o, &s->search.edges, s->direction, s->search.fit.radius, err))
+    if (sun_light_measure(&s->light, &in, &s->search.edges, s->direction, s->search.fit.radius, err))
         return err->status;
     if (s->light.places) s->radius = outdoors_paint_sun(o, s->direction, s->search.fit.radius, s->light.irradiance);
     return ST_OK;

@@ -3,6 +3,7 @@
 #ifndef REMODEL_OUTDOORS_SUN_H
 #define REMODEL_OUTDOORS_SUN_H
 
+#include "common/relight/light_things.h"
 #include "stages/bake_outdoors/outdoors_gather.h"
 #include "stages/bake_outdoors/sun_light.h"
 #include "stages/bake_outdoors/sun_search.h"
@@ -21,14 +22,23 @@ struct outdoors_sun {
     struct sun_search search; /* if patches were looked for */
     struct sun_light light;   /* SUN_PATCHES */
     double radius;            /* degrees, of the disk that was painted */
-    struct field_atlas atlas; /* the VITA; owned */
+    struct field_atlas atlas; /* the VITA; owned, as are those below */
     struct face_plane *planes;
+    struct thing_surfaces things;
+    struct field_surfaces furniture; /* of things */
+    struct model_rays furnished;     /* the model with them: what throws shadows */
 };
 
-/* Finds the direction. o: what pictures show. vita: folder of the VITA without edits; NULL: only lighting reference
- * images tell. The caller releases s, also after a failure. ST_DATA: a damaged VITA; ST_NOMEM. */
+/* What patches of sun are looked for in. */
+struct outdoors_sun_files {
+    const char *model, *vita; /* model.txt; the folder of the VITA without edits; NULL: only reference images tell */
+    const char *things;       /* folder of the furniture; NULL: none */
+};
+
+/* Finds the direction. o: what pictures show. The caller releases s, also after a failure. ST_DATA: a damaged file;
+ * ST_NOMEM. */
 enum status outdoors_sun_find(struct outdoors_sun *s, const struct outdoors *o, const struct outdoors_model *model,
-                              const char *vita, struct provenance *prov, struct err *err);
+                              const struct outdoors_sun_files *files, struct provenance *prov, struct err *err);
 /* Of a sun found from patches: measures its light under the rest of the outdoors, and paints its disk into them. */
 enum status outdoors_sun_add(struct outdoors_sun *s, struct outdoors *o, const struct outdoors_model *model,
                              struct err *err);

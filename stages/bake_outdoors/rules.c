@@ -4,7 +4,7 @@
 RULES(bake_outdoors)
 {
     struct name_list images = {0};
-    graph_step(g, "outdoors", STEP_ONE, "fill");
+    graph_step(g, "outdoors", STEP_ONE, "fill things");
     graph_goal(g, "outdoors", NULL);
     if (!f->has_model) return;
     graph_goal(g, "outdoors", PATH(g, OUTDOORS));
@@ -14,6 +14,7 @@ RULES(bake_outdoors)
     rule_takes_seen_model(g);
     rule_needs(g, PATH(g, ATLAS, .atlas = FILL_ATLAS));
     rule_option(g, "--vita", FOLDER(g, ATLAS, .atlas = FILL_ATLAS));
+    rule_takes_things(g, f);
     rule_needs_references(g, f);
     for (int i = 0; i < f->references.count; i++) {
         const char *image = PATH(g, LRI, .photo = f->references.names[i]);

@@ -81,6 +81,16 @@ struct sums {
     double with[PARTS], without[PARTS];
 };
 
+static double expected_of(const struct atlas_pair *p, const float *share, double quotient)
+{
+    return log((1 + quotient * (double)share[p->a]) / (1 + quotient * (double)share[p->b]));
+}
+
+static double left_of(const struct fitting *f, int pair, const float *share, double quotient)
+{
+    return (double)f->differences[pair] - expected_of(&f->texels->pairs[pair], share, quotient);
+}
+
 static double cut(double x) { return fmin(fabs(x), CUT); }
 
 /* Adds the pairs from first to end, all of one tile, with the quotient that suits them best. */
@@ -283,6 +293,57 @@ static enum status prepare(struct fitting *fit, struct err *err)
         fit->differences[i] = (a->level[0] - b->level[0] + a->level[1] - b->level[1] + a->level[2] - b->level[2]) / 3;
     }
     return ST_OK;
+}
+
+/* The share of the pairs' contrast that a direction explains after another one has explained what it can. */
+static double rest_of(const struct fitting *fit, const float *known, const float *share)
+{
+    const struct atlas_squares *t = fit->texels;
+    double with = 0, without = 0, all = 0;
+    for (int first = 0, end; first < t->pair_count; first = end) {
+        const int tile = t->list[t->pairs[first].a].tile;
+        double least = INFINITY, rest = INFINITY, now = 0, q_known = 0;
+        for (end = first; end < t->pair_count && t->list[t->pairs[end].a].tile == tile; end++) continue;
+        for (int q = 0; q < QUOTIENTS; q++) {
+            double total = 0;
+            for (int i = first; i < end; i++) total += cut(left_of(fit, i, known, quotients[q]));
+            if (total < least) least = total, q_known = quotients[q];
+        }
+        for (int q = 0; q < QUOTIENTS; q++) {
+            double total = 0;
+            for (int i = first; i < end; i++) {
+                const struct atlas_pair *p = &t->pairs[i];
+                if (share[p->a] == share[p->b]) continue;
+                const double left = left_of(fit, i, known, q_known);
+                total += cut(left - expected_of(p, share, quotients[q]));
+                if (q) continue;
+                now += cut(left);
+                all += cut((double)fit->differences[i]);
+            }
+            rest = fmin(rest, total);
+        }
+        with += rest;
+        without += now;
+    }
+    return all > 0 ? (without - with) / all : 0;
+}
+
+enum status sun_fit_rest(double *gain, const struct sun_fit *known, const struct sun_fit *other,
+                         const struct atlas_squares *texels, const struct model_rays *model, struct err *err)
+{
+    struct fitting fit = {.texels = texels, .model = model, .sign = 1};
+    const size_t count = (size_t)texels->count + 1;
+    float *shares = malloc(2 * count * sizeof *shares);
+    if (!shares) err_nomem(err, "squares", 2 * count * sizeof *shares);
+    if (!err->status && !prepare(&fit, err)) {
+        sun_shares(shares, texels, model, known->direction, known->radius);
+        sun_shares(shares + count, texels, model, other->direction, other->radius);
+        *gain = rest_of(&fit, shares, shares + count);
+    }
+    free(shares);
+    free(fit.parts);
+    free(fit.differences);
+    return err->status;
 }
 
 enum status sun_fit_edges(struct sun_fit *f, const struct atlas_squares *texels, const struct model_rays *model,

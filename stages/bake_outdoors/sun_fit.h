@@ -24,4 +24,9 @@ void sun_shares(float *share, const struct atlas_squares *texels, const struct m
 /* A unit direction `degrees` off a unit direction, at an angle (radians) around it. */
 struct vec3 sun_aside(struct vec3 direction, double angle, double degrees);
 
+/* How much of the contrast at its edges a direction explains once `known` has explained what it can: the gain of a
+ * direction whose patches lie on the same edges is small. texels: close to the edges of `other`. ST_NOMEM. */
+enum status sun_fit_rest(double *gain, const struct sun_fit *known, const struct sun_fit *other,
+                         const struct atlas_squares *texels, const struct model_rays *model, struct err *err);
+
 #endif

@@ -3,6 +3,23 @@
 
 #include <math.h>
 
+/* The texture of a face, or the colour of a piece of furniture. */
+static void see(struct light_look *seen, const struct sun_indoors *in, const struct ray_hit *hit)
+{
+    const struct atlas_scene *s = in->scene;
+    const int extra = (int)hit->id - s->model->mesh.face_count;
+    seen->distance = hit->t;
+    if (extra >= 0) {
+        seen->radiance = in->furniture->radiance[extra][!hit->front];
+        seen->source = LIGHT_MATERIAL;
+    } else if (hit->front) {
+        const struct field_texel texel =
+            field_atlas_look(s->atlas, solid_face_id(&s->model->mesh, (int)hit->id), hit->point);
+        seen->radiance = texel.radiance;
+        seen->source = texel.source;
+    }
+}
+
 static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec3 normal,
                  const struct vec3 direction[RAY_PACKET], unsigned active, struct light_look seen[RAY_PACKET])
 {
@@ -18,12 +35,7 @@ static void look(const void *ctx, const struct vec3 from[RAY_PACKET], struct vec
         if (!(active >> k & 1)) continue;
         seen[k] = (struct light_look){{0, 0, 0}, INFINITY, LIGHT_NONE, -1};
         if (hit >> k & 1) {
-            seen[k].distance = hits[k].t;
-            if (!hits[k].front) continue;
-            const struct field_texel texel =
-                field_atlas_look(s->atlas, solid_face_id(&s->model->mesh, (int)hits[k].id), hits[k].point);
-            seen[k].radiance = texel.radiance;
-            seen[k].source = texel.source;
+            see(&seen[k], in, &hits[k]);
         } else {
             outdoors_sample(rgb, in->outdoors, direction[k]);
             seen[k].radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);

@@ -4,12 +4,16 @@
 
 #include "common/gather/atlas_squares.h"
 #include "common/gather/irradiance.h"
+#include "common/gather/model_field.h"
 #include "common/texture/outdoors.h"
 
-/* What a gather sees: the textures of the model, and through its openings the outdoors without the sun. */
+/* What a gather sees: the textures of the model, its furniture, and through its openings the outdoors without the sun.
+ */
 struct sun_indoors {
-    const struct atlas_scene *scene;
+    const struct atlas_scene *scene; /* its model may have the triangles of furniture behind its faces */
     const struct outdoors *outdoors;
+    const struct field_surfaces *furniture; /* what these triangles send out; NULL: the model has none */
+    const struct model_rays *bare;          /* the model without them; NULL: as the scene's */
 };
 
 /* The field that gathers read; `in` must live as long. */

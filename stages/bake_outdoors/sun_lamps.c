@@ -302,7 +302,7 @@ enum status sun_lamps_fit(struct sun_lamps *l, const struct sun_indoors *in, con
 {
     struct rows rows = {.in = in, .lamps = l};
     *l = (struct sun_lamps){0};
-    if (!list_lamps(l, in->scene->model, err) && !list_rows(&rows, edges, direction, radius, err))
+    if (!list_lamps(l, in->bare ? in->bare : in->scene->model, err) && !list_rows(&rows, edges, direction, radius, err))
         make_rows(&rows, err);
     for (int c = 0; !err->status && c < 3 && l->count && rows.count; c++) fit_colour(l, &rows, c, err);
     rows_release(&rows);

@@ -161,27 +161,26 @@ static void sum_up(struct sun_light *l, const struct place *places, int count, s
     l->error = hypot(spread, UNSURE * l->lamps);
 }
 
-enum status sun_light_measure(struct sun_light *l, const struct atlas_scene *scene, const struct outdoors *o,
-                              const struct atlas_squares *texels, struct vec3 direction, double radius, struct err *err)
+enum status sun_light_measure(struct sun_light *l, const struct sun_indoors *in, const struct atlas_squares *texels,
+                              struct vec3 direction, double radius, struct err *err)
 {
     struct place *places = malloc(MOST * sizeof *places);
     struct weighted *scratch = malloc(MOST * sizeof *scratch);
     float *share = malloc(((size_t)texels->count + 1) * sizeof *share);
-    const struct sun_indoors in = {scene, o};
     struct sun_lamps lamps = {0};
     int count = 0;
     *l = (struct sun_light){0};
     if (!places || !scratch || !share) err_nomem(err, "places", MOST * sizeof *places);
     if (!err->status) {
-        sun_shares(share, texels, scene->model, direction, radius);
+        sun_shares(share, texels, in->scene->model, direction, radius);
         for (int i = 0; i < texels->count; i++) {
             struct place *p = find_place(places, &count, &texels->list[i], PLACE * texels->side);
             if (p) add_square(p, &texels->list[i], (double)share[i]);
         }
         count = keep_useful(places, count, direction);
     }
-    if (!err->status && count && !sun_lamps_fit(&lamps, &in, texels, direction, radius, err)) {
-        struct measuring m = {places, &lamps, scene->model, sun_indoors_field(&in), direction};
+    if (!err->status && count && !sun_lamps_fit(&lamps, in, texels, direction, radius, err)) {
+        struct measuring m = {places, &lamps, in->scene->model, sun_indoors_field(in), direction};
         parallel_for((size_t)count, 1, measure_range, &m);
         sum_up(l, places, count, scratch);
     }

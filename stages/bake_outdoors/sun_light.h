@@ -2,8 +2,8 @@
 #ifndef REMODEL_SUN_LIGHT_H
 #define REMODEL_SUN_LIGHT_H
 
-#include "common/texture/outdoors.h"
 #include "stages/bake_outdoors/sun_fit.h"
+#include "stages/bake_outdoors/sun_indoors.h"
 
 struct sun_light {
     struct rgb irradiance; /* of a surface that faces the sun */
@@ -12,10 +12,9 @@ struct sun_light {
     int places;            /* at which it was measured; 0: at none, and irradiance is 0 */
 };
 
-/* texels: squares close to the edges of the patches of a sun of this direction and radius (degrees); o: the outdoors
+/* texels: squares close to the edges of the patches of a sun of this direction and radius (degrees); in: the outdoors
  * without it. ST_NOMEM. */
-enum status sun_light_measure(struct sun_light *l, const struct atlas_scene *scene, const struct outdoors *o,
-                              const struct atlas_squares *texels, struct vec3 direction, double radius,
-                              struct err *err);
+enum status sun_light_measure(struct sun_light *l, const struct sun_indoors *in, const struct atlas_squares *texels,
+                              struct vec3 direction, double radius, struct err *err);
 
 #endif

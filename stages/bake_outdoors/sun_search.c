@@ -18,6 +18,8 @@
  *   3. The interval comes from leaving out one part of the edges in turn [Efron 1982, the jackknife]: parts are cubes
  *      of space, so that a piece of texture is in one of them.
  * What chance can do is seen from directions whose patches are darker than what is around them: light never does that.
+ *   A wrong direction may throw a patch through another window onto an edge of the right patch, and then explains a
+ * part of it. So the other peaks count by what they explain of what the best one leaves.
  *
  * Source: none for this form. That shadows and patches give the direction of the sun is common knowledge; the search
  * over directions with the model's own openings follows [Colburn 2014, 5.3.2] in treating a window as the light. */
@@ -281,26 +283,28 @@ static bool is_sun(const struct sun_search *s)
            s->evidence.agree >= MIN_AGREE;
 }
 
-/* Refines the peaks, and keeps the one that explains most. */
+/* Refines the peaks, and keeps the one that explains most. What the others explain, they explain beside it. */
 static enum status choose_peak(struct sun_search *s, struct peak *peaks, int count, const struct atlas_squares *coarse,
                                const struct atlas_scene *scene, struct err *err)
 {
-    for (int k = 0; !err->status && k < count; k++) {
-        struct atlas_squares fine = {0};
-        refine_peak(&peaks[k], &fine, coarse, scene, err);
-        if (!err->status && (k == 0 || peaks[k].fit.gain > s->fit.gain)) {
-            const struct atlas_squares other = s->edges;
-            s->fit = peaks[k].fit;
-            s->evidence = peaks[k].evidence;
-            s->edges = fine;
-            fine = other;
-        }
-        atlas_squares_release(&fine);
-    }
+    struct atlas_squares fine[PEAKS] = {{0}};
+    int best = 0;
     for (int k = 0; !err->status && k < count; k++)
-        if (angle_between(peaks[k].fit.direction, s->fit.direction) >= APART)
-            s->next = fmax(s->next, peaks[k].fit.gain);
-    if (!err->status) s->found = count > 0 && is_sun(s);
+        if (!refine_peak(&peaks[k], &fine[k], coarse, scene, err) && peaks[k].fit.gain > peaks[best].fit.gain) best = k;
+    for (int k = 0; !err->status && k < count; k++) {
+        double rest = 0;
+        if (angle_between(peaks[k].fit.direction, peaks[best].fit.direction) < APART) continue;
+        if (!sun_fit_rest(&rest, &peaks[best].fit, &peaks[k].fit, &fine[k], scene->model, err))
+            s->next = fmax(s->next, rest);
+    }
+    if (!err->status && count) {
+        s->fit = peaks[best].fit;
+        s->evidence = peaks[best].evidence;
+        s->edges = fine[best];
+        fine[best] = (struct atlas_squares){0};
+        s->found = is_sun(s);
+    }
+    for (int k = 0; k < count; k++) atlas_squares_release(&fine[k]);
     return err->status;
 }
 

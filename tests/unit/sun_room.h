@@ -22,7 +22,7 @@ static void make_sky_light(void)
     const struct atlas_scene scene = {&model, &black, planes};
     struct outdoors o = {0};
     uniform_outdoors(&o, 1);
-    const struct sun_indoors in = {&scene, &o};
+    const struct sun_indoors in = {.scene = &scene, .outdoors = &o};
     const struct light_field field = sun_indoors_field(&in);
     for (int t = 0; t < TILES; t++)
         for (int k = 0; k < NODES * NODES; k++) {

@@ -25,7 +25,7 @@ static void fit_room(struct sun_lamps *l, double intensity)
     const struct room_lamp light = {{1.7, 2.4, 2.6}, intensity};
     make_atlas(&atlas, SCALE, shade, &light);
     const struct atlas_scene scene = {&model, &atlas, planes};
-    const struct sun_indoors in = {&scene, &o};
+    const struct sun_indoors in = {.scene = &scene, .outdoors = &o};
     assert_ok(sun_lamps_fit(l, &in, &edges, vec3_make(0, 1, 0), 1, &err), err);
     outdoors_release(&o);
     field_atlas_release(&atlas);
