@@ -36,10 +36,12 @@ static enum status write_file(FILE *to, const char *name, const char *path, stru
     return ST_OK;
 }
 
+/* Texts, and meshes of objects. */
 static int is_text(const struct dirent *entry)
 {
     const size_t n = strlen(entry->d_name);
-    return entry->d_name[0] != '.' && n > 4 && !strcmp(entry->d_name + n - 4, ".txt");
+    const char *end = entry->d_name + n - (n > 4 ? 4 : 0);
+    return entry->d_name[0] != '.' && (!strcmp(end, ".txt") || !strcmp(end, ".obj"));
 }
 
 /* The files that people write: scenes/NAME/X.txt as scene/X.txt. */

@@ -6,6 +6,8 @@
 
 #include "common/base/err.h"
 #include "common/base/param.h"
+#include "common/model/thing_list.h"
+#include "common/model/thing_volume.h"
 
 /* name, type, default, min, max, unit, help */
 #define DRAW_PARAMS(X)                                                                                        \
@@ -38,6 +40,10 @@ enum status draw_data_write_packed(FILE *to, const void *bytes, size_t size, str
 enum status draw_masks_write(FILE *to, const struct draw_sources *from, struct err *err);
 /* The furniture and which of it each photo shows; null without `things`. */
 enum status draw_things_write(FILE *to, const struct draw_sources *from, struct err *err);
+
+/* The surface of a thing, the id-th of its list: corners and triangles; null where it has none. */
+enum status draw_shape_write(FILE *to, const struct thing *t, uint32_t id, const struct thing_volume *volume,
+                             struct err *err);
 
 /* scene.js: texts that the C code reads, the scene's own files, straight edges of each photo, masks, furniture. */
 enum status draw_data_write_scene(const char *path, const struct draw_sources *from, struct err *err);

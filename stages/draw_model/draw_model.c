@@ -2,9 +2,9 @@
  *
  * reads   VIEWS, AXES, POINTS, LINES, SUGGESTED, CONFIG   what build_model reads, straight edges, a first script
  *         CANDIDATES, LIGHTS                    marks of lamps that fit_lights proposes, lamps that it fitted
- *         THINGS                                furniture, and which of it each view shows
+ *         THINGS                                furniture, its surfaces, and which of it each view shows
  *         REFERENCES/ID.jpg                     lighting reference images
- *         SCENE/NAME.txt, edits/E.txt, masks/PHOTO.png   what people wrote of the scene
+ *         SCENE/NAME.txt, NAME.obj, edits/E.txt, masks/PHOTO.png   what people wrote of the scene
  *         RECORDS/PHOTO.txt, PHOTOS/FILE        the photographs
  *         WASM                                  build_model as WebAssembly
  *         PAGE/page.html                        the page's sources

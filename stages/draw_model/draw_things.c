@@ -96,16 +96,20 @@ static enum status write_cells(FILE *to, const struct draw_sources *from, const 
     return err->status;
 }
 
-static void write_list(FILE *to, const struct thing_list *list)
+static enum status write_list(FILE *to, const struct thing_list *list, const struct thing_volume *volume,
+                              struct err *err)
 {
-    for (int i = 0; i < list->count && i < THINGS; i++) {
+    for (int i = 0; !err->status && i < list->count && i < THINGS; i++) {
         const struct thing *t = &list->things[i];
         const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
         fputs(i ? ",\n{\"name\": " : "\n{\"name\": ", to);
         draw_data_write_string(to, t->name, strlen(t->name));
-        fprintf(to, ", \"middle\": [%.6g, %.6g, %.6g], \"radius\": %.6g, \"hangs\": %d}", middle.x, middle.y, middle.z,
-                vec3_length(vec3_sub(t->high, middle)), t->support == THING_ON_CEILING);
+        fprintf(to, ", \"middle\": [%.6g, %.6g, %.6g], \"radius\": %.6g, \"hangs\": %d, \"shape\": ", middle.x,
+                middle.y, middle.z, vec3_length(vec3_sub(t->high, middle)), t->support == THING_ON_CEILING);
+        draw_shape_write(to, t, (uint32_t)i + 1, volume, err);
+        putc('}', to);
     }
+    return err->status;
 }
 
 enum status draw_things_write(FILE *to, const struct draw_sources *from, struct err *err)
@@ -113,6 +117,7 @@ enum status draw_things_write(FILE *to, const struct draw_sources *from, struct 
     const struct scene_files files = {.views = from->views};
     struct scene_inputs in = {0};
     struct thing_list list = {0};
+    struct thing_volume volume = {0};
     char path[FILE_PATH];
     if (!from->things) {
         fputs("null", to);
@@ -120,8 +125,10 @@ enum status draw_things_write(FILE *to, const struct draw_sources *from, struct 
     }
     if (!product_path_in(path, from->things, PRODUCT_THINGS, NULL, err) && !thing_list_read(&list, path, NULL, err))
         scene_inputs_read(&in, SCENE_CAMERAS | SCENE_LENSES, &files, NULL, err);
+    if (!err->status && !product_path_in(path, from->things, PRODUCT_THING_VOLUME, NULL, err))
+        thing_volume_read(&volume, path, (uint32_t)list.count, NULL, err);
     fputs("{\"list\": [", to);
-    write_list(to, &list);
+    if (!err->status) write_list(to, &list, &volume, err);
     fputs("],\n\"photos\": {", to);
     for (int i = 0, written = 0; !err->status && i < in.lenses.count; i++) {
         bool known = false;
@@ -132,6 +139,7 @@ enum status draw_things_write(FILE *to, const struct draw_sources *from, struct 
     }
     fputs("}}", to);
     thing_list_release(&list);
+    thing_volume_release(&volume);
     scene_inputs_release(&in);
     return err->status;
 }

@@ -21,6 +21,11 @@ static void needs_texts(struct graph *g, const struct scene_facts *f)
     rule_needs(g, graph_stamp_list(g, "draw-edits.txt", &f->edits));
     for (int i = 0; i < f->edits.count; i++)
         rule_needs(g, graph_text(g, "%s/edits/%s.txt", f->folder, f->edits.names[i]));
+    struct name_list meshes = {0};
+    name_list_add_files(&meshes, f->folder, "", ".obj", graph_err(g));
+    rule_needs(g, graph_stamp_list(g, "draw-meshes.txt", &meshes));
+    for (int i = 0; i < meshes.count; i++) rule_needs(g, graph_text(g, "%s/%s.obj", f->folder, meshes.names[i]));
+    name_list_release(&meshes);
 }
 
 /* A product that may be there: the page shows what it says, and does not wait for it. folder: passed in its place;

@@ -55,6 +55,17 @@ loft_is_drawn_from_nothing()
     verdicts
 }
 
+furniture_of_loft_has_its_surfaces()
+{
+    wasm
+    [ -e "$loft/things/volume.exr" ] || skip "out/loft+draft has no furniture; run make SCENE=loft QUALITY=draft things"
+    mkdir -p empty
+    "$B/bin/draw_model" --name loft --scene empty --views "$loft/views" --axes "$loft/model/axes.txt" --things "$loft/things" \
+        --photos "${loft%+draft}/hdr" --records "${loft%+draft}/photos" --wasm "$B/wasm/build_model.wasm" --page stages/draw_model/page --out page
+    node "$root/tests/browser/shapes.js" page "$loft/things/things.txt" >said.txt 2>&1 || { cat said.txt; fail "the surfaces are not those of the things"; }
+    cat said.txt
+}
+
 the_module_makes_the_bytes_of_loft_and_its_edits()
 {
     wasm
@@ -90,4 +101,4 @@ make_draw_makes_the_page_and_follows_what_people_write()
     grep -q 'box b from 0 0' out/t/draw/scene.js || fail "model.txt is not in the page"
 }
 
-for t in make_draw_makes_the_page_and_follows_what_people_write a_room_is_drawn_in_all_ways a_room_without_a_scale_is_drawn loft_is_drawn_from_nothing the_module_makes_the_bytes_of_loft_and_its_edits; do run $t; done
+for t in make_draw_makes_the_page_and_follows_what_people_write a_room_is_drawn_in_all_ways a_room_without_a_scale_is_drawn loft_is_drawn_from_nothing furniture_of_loft_has_its_surfaces the_module_makes_the_bytes_of_loft_and_its_edits; do run $t; done

@@ -8,6 +8,7 @@
  * were photographed. The photographs that show this place are those in whose frame it lies, with no surface and no
  * furniture before it. Of these the one counts that looks at it most as this one does: the angle between the two
  * directions, and 0.2 of how much farther it is, as render_model chooses viewpoints [Buehler 2001].
+ *  * Furniture at a new place and objects stand before that (draft_things.c).
  *  * Panes are transparent; what lies outdoors is looked up by its direction.
  *
  * A model has some hundred faces, so a ray tries them all: first the plane, then the face's box, then its triangles. */
@@ -165,29 +166,6 @@ static int nearest_of(const struct draft_solid *s, int id, struct vec3 p, struct
     return found;
 }
 
-/* ------------------------------------------------------------------------------------------------------- furniture */
-
-/* The thing that a photo shows at a pixel; NULL: none. */
-static const struct draft_thing *thing_at(const struct draft *d, int photo, const struct photo_camera *c, double u,
-                                          double v)
-{
-    if (photo >= d->mask_count || !d->masks[photo].things) return NULL;
-    const struct draft_mask *m = &d->masks[photo];
-    const int x = (int)(u / c->lens.width * m->columns), y = (int)(v / c->lens.height * m->rows);
-    if (x < 0 || y < 0 || x >= m->columns || y >= m->rows) return NULL;
-    const int id = m->things[(size_t)y * (size_t)m->columns + (size_t)x];
-    return id && id <= d->thing_count ? &d->things[id - 1] : NULL;
-}
-
-static bool is_gone(const struct texture_map *map, const struct draft_thing *t)
-{
-    for (int i = map->thing_count - 1; i >= 0; i--) {
-        const struct texture_thing *said = &map->things[i];
-        if (!strcmp(said->name, t->name)) return said->kind != TEXTURE_THING_KEEP;
-    }
-    return !t->is_fixed && texture_map_clears(map, t->middle);
-}
-
 /* --------------------------------------------------------------------------------------------------------- photos */
 
 /* How little a photo suits a place that another camera looks at along `ray` from a distance: the less the better. A
@@ -203,7 +181,7 @@ static double misfit(const struct draft *d, const struct placer *placer, int own
     if (!photo_camera_project(c, vec3_add(c->center, to), &at[0], &at[1]) || !(at[0] >= 0 && at[1] >= 0) ||
         !(at[0] <= c->lens.width && at[1] <= c->lens.height))
         return -1;
-    if (thing_at(d, photo, c, at[0], at[1])) return -1;
+    if (draft_things_at(&d->things, photo, c, at[0], at[1])) return -1;
     const double cosine = fmin(1, fmax(-1, vec3_dot(to, ray) / length));
     return outdoors ? vec3_length(vec3_sub(c->center, placer->photos[own].camera.center))
                     : acos(cosine) + FARTHER * fmax(0, length / away - 1);
@@ -271,22 +249,26 @@ struct draft_pixel draft_pixel_of(const struct draft *d, const struct placer *pl
 {
     const struct draft_pixel own = {DRAFT_PIXEL, photo, {u, v}};
     const struct photo_camera *c = &placer->photos[photo].camera;
+    struct draft_pixel placed;
     struct vec3 ray;
-    double was, is;
+    double was, is, wall;
     if (!photo_camera_ray(c, u, v, &ray)) return own;
-    const struct draft_thing *thing = thing_at(d, photo, c, u, v);
+    const struct draft_thing *thing = draft_things_at(&d->things, photo, c, u, v);
     const int before = meet(d->solids[0], c->center, ray, true, HUGE_VAL, &was);
     const int after = meet(d->solids[1], c->center, ray, true, HUGE_VAL, &is);
+    const int face = meet(d->solids[1], c->center, ray, false, HUGE_VAL, &wall);
+    const bool stays = thing && !thing->is_gone;
+    const double front = stays ? draft_things_distance(thing, c->center, ray) : HUGE_VAL;
+    if (draft_things_meet(&d->things, placer, c->center, ray, fmin(front, wall), &placed)) return placed;
     const bool same = before < 0 || after < 0
                           ? before == after
                           : fabs(is - was) < NEAR * d->size &&
                                 texture_map_keeps(&d->map, d->solids[1]->faces[after].id,
                                                   vec3_add(c->center, vec3_scale(ray, is)), 10 * NEAR * d->size);
     if (same && !(thing && thing->is_gone)) return own;
-    if (thing && !thing->is_gone && is > vec3_length(vec3_sub(thing->middle, c->center)) - thing->radius) return own;
-    const int face = meet(d->solids[1], c->center, ray, false, HUGE_VAL, &is);
+    if (stays && is > vec3_length(vec3_sub(thing->middle, c->center)) - thing->radius) return own;
     return face < 0 ? outdoors(d, placer, photo, ray)
-                    : surface(d, placer, photo, face, vec3_add(c->center, vec3_scale(ray, is)), ray, is);
+                    : surface(d, placer, photo, face, vec3_add(c->center, vec3_scale(ray, wall)), ray, wall);
 }
 
 bool draft_other_pixel(const struct draft *d, const struct placer *placer, int photo, double u, double v, int other,
@@ -295,7 +277,7 @@ bool draft_other_pixel(const struct draft *d, const struct placer *placer, int p
     const struct photo_camera *c = &placer->photos[photo].camera;
     struct vec3 ray;
     double away;
-    if (!photo_camera_ray(c, u, v, &ray) || thing_at(d, photo, c, u, v)) return false;
+    if (!photo_camera_ray(c, u, v, &ray) || draft_things_at(&d->things, photo, c, u, v)) return false;
     const int face = meet(d->solids[0], c->center, ray, false, HUGE_VAL, &away);
     const struct vec3 place = vec3_add(c->center, vec3_scale(ray, away));
     return face >= 0 && misfit(d, placer, photo, other, place, face, ray, away, at) >= 0 &&
@@ -304,36 +286,7 @@ bool draft_other_pixel(const struct draft *d, const struct placer *placer, int p
 
 /* ------------------------------------------------------------------------------------------------------ beginning */
 
-enum status draft_add_thing(struct draft *d, const char *name, struct vec3 middle, double radius, bool is_fixed,
-                            struct err *err)
-{
-    if (array_append(&d->things, (size_t)d->thing_count, sizeof *d->things, "things", err)) return err->status;
-    struct draft_thing *t = &d->things[d->thing_count];
-    *t = (struct draft_thing){.name = strdup(name), .middle = middle, .radius = radius, .is_fixed = is_fixed};
-    if (!t->name) return err_nomem(err, "a thing's name", strlen(name));
-    d->thing_count++;
-    return ST_OK;
-}
-
-unsigned char *draft_mask_of(struct draft *d, int photo, int columns, int rows, struct err *err)
-{
-    if (photo < 0 || columns < 1 || rows < 1 || columns > 10000 || rows > 10000) {
-        err_set(err, ST_USAGE, "found a mask of %d x %d cells of photo %d, wanted at most 10000 x 10000.", columns,
-                rows, photo);
-        return NULL;
-    }
-    while (d->mask_count <= photo) {
-        if (array_append(&d->masks, (size_t)d->mask_count, sizeof *d->masks, "masks", err)) return NULL;
-        d->masks[d->mask_count++] = (struct draft_mask){0};
-    }
-    struct draft_mask *m = &d->masks[photo];
-    free(m->things);
-    *m = (struct draft_mask){columns, rows, calloc((size_t)columns, (size_t)rows)};
-    if (!m->things) err_nomem(err, "a mask", (size_t)columns * (size_t)rows);
-    return m->things;
-}
-
-enum status draft_begin(struct draft *d, struct building *after, struct err *err)
+enum status draft_begin(struct draft *d, struct building *after, const char *scene, struct err *err)
 {
     for (int k = 0; k < 2; k++) {
         solid_free(d->solids[k]);
@@ -347,9 +300,13 @@ enum status draft_begin(struct draft *d, struct building *after, struct err *err
     d->size = 0;
     for (int i = 0; i < d->before.mesh.vertex_count; i++)
         d->size = fmax(d->size, vec3_length(vec3_sub(d->before.mesh.vertices[i].p, d->before.mesh.vertices[0].p)));
-    for (int i = 0; i < d->thing_count; i++) d->things[i].is_gone = is_gone(&d->map, &d->things[i]);
     d->solids[0] = solid_of(&d->before.mesh, err);
     if (!err->status) d->solids[1] = solid_of(&after->mesh, err);
+    for (int i = 0; !err->status && i < d->things.thing_count; i++) {
+        struct draft_thing *t = &d->things.things[i];
+        if (meet(d->solids[0], t->middle, vec3_make(0, 0, -1), true, HUGE_VAL, &t->above) < 0) t->above = t->middle.z;
+    }
+    if (!err->status) draft_things_begin(&d->things, &d->map, &after->plan, scene, err);
     return err->status;
 }
 
@@ -361,6 +318,7 @@ void draft_end(struct draft *d)
         solid_free(d->solids[k]);
         d->solids[k] = NULL;
     }
+    draft_things_end(&d->things);
     texture_map_release(&d->map);
     building_release(&d->before);
     d->map = (struct texture_map){0};
@@ -369,9 +327,6 @@ void draft_end(struct draft *d)
 void draft_release(struct draft *d)
 {
     draft_end(d);
-    for (int i = 0; i < d->thing_count; i++) free(d->things[i].name);
-    for (int i = 0; i < d->mask_count; i++) free(d->masks[i].things);
-    free(d->things);
-    free(d->masks);
+    draft_things_release(&d->things);
     *d = (struct draft){0};
 }

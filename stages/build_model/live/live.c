@@ -315,13 +315,19 @@ int live_pick(int photo, double u, double v)
 int live_thing(const char *name, double x, double y, double z, double radius, int hangs)
 {
     live.err = (struct err)ERR_INIT;
-    return draft_add_thing(&live.draft, name, vec3_make(x, y, z), radius, hangs != 0, &live.err);
+    return draft_things_add(&live.draft.things, name, vec3_make(x, y, z), radius, hangs != 0, &live.err);
+}
+
+float *live_thing_corners(int thing, int triangles)
+{
+    live.err = (struct err)ERR_INIT;
+    return draft_things_corners(&live.draft.things, thing, triangles, &live.err);
 }
 
 unsigned char *live_mask(int photo, int columns, int rows)
 {
     if (!camera_of(photo)) return NULL;
-    return draft_mask_of(&live.draft, photo, columns, rows, &live.err);
+    return draft_things_mask(&live.draft.things, photo, columns, rows, &live.err);
 }
 
 int live_draft(const char *script, const char *things)
@@ -331,7 +337,7 @@ int live_draft(const char *script, const char *things)
     draft_end(&live.draft);
     provenance_keep(&live.prov, live.inputs);
     if (building_make(&live.draft.before, &files, &live.in.axes, &live.placer, &live.prov, &live.err) ||
-        draft_begin(&live.draft, &live.building, &live.err))
+        draft_begin(&live.draft, &live.building, live.files.scene, &live.err))
         draft_end(&live.draft);
     return live.err.status;
 }
@@ -367,6 +373,18 @@ int live_shared(int photo, int other, int columns, int rows)
 int live_draft_gone(void)
 {
     begin_numbers();
-    for (int i = 0; i < live.draft.thing_count; i++) add_numbers(&(double){live.draft.things[i].is_gone}, 1);
-    return live.err.status ? -1 : live.draft.thing_count;
+    const struct draft_things *t = &live.draft.things;
+    for (int i = 0; i < t->thing_count; i++) add_numbers(&(double){t->things[i].is_gone}, 1);
+    return live.err.status ? -1 : t->thing_count;
+}
+
+int live_draft_placed(void)
+{
+    begin_numbers();
+    const struct draft_things *t = &live.draft.things;
+    for (int i = 0; i < t->placed_count; i++) {
+        const struct vec3 at = draft_things_middle(t, i);
+        add_numbers((const double[]){t->placed[i].thing, at.x, at.y, at.z}, 4);
+    }
+    return live.err.status ? -1 : t->placed_count;
 }

@@ -62,6 +62,9 @@ int live_is_metric(void);
  * which of it a photo shows, on a grid of its pixels, for the caller to fill; NULL after a failure. live_begin()
  * forgets both. */
 int live_thing(const char *name, double x, double y, double z, double radius, int hangs);
+/* Its surface, for what stands elsewhere after an edit: memory for nine numbers a triangle, its corners, for the caller
+ * to fill. thing: from 0. NULL after a failure. */
+float *live_thing_corners(int thing, int triangles);
 unsigned char *live_mask(int photo, int columns, int rows);
 /* Compares the last model, of an edit, with the rooms of the script alone: a draft of what make remodel draws. Building
  * a model forgets it. */
@@ -74,6 +77,9 @@ int live_draft_rows(int photo, int columns, int rows, int first, int count);
 int live_shared(int photo, int other, int columns, int rows);
 /* For each piece of furniture whether the edit takes it from its place, 0 or 1. Returns how many there are. */
 int live_draft_gone(void);
+/* What stands at a new place, and objects: the furniture's number from 0, -1 for an object, and x, y, z of its middle.
+ * Returns how many there are. */
+int live_draft_placed(void);
 
 #pragma GCC visibility pop
 

@@ -9,6 +9,19 @@ const LINEAR = Float32Array.from({length: 256}, (_, i) => i <= 10 ? i / 3294.6 :
 const shown8 = (v) => 255 * Math.min(1, v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055);
 const USUAL_ALBEDO = 0.6, SIZES = [120, 480]; /* columns of the pictures, one after the other */
 
+/* The corners of a thing's triangles, nine numbers each, of what draw_shapes.c packed. */
+function cornersOf({low, step, corners, triangles}, planes) {
+    const count = 3 * (corners + triangles), numbers = new Int32Array(count), made = new Float32Array(9 * triangles);
+    for (let i = 0; i < count; i++) {
+        const folded = planes[i] | planes[count + i] << 8 | planes[2 * count + i] << 16 | planes[3 * count + i] << 24;
+        const before = i < 3 || (i >= 3 * corners && i < 3 * corners + 3) ? 0 : numbers[i - 3];
+        numbers[i] = before + ((folded >>> 1) ^ -(folded & 1));
+    }
+    for (let i = 0; i < 3 * triangles; i++)
+        for (let k = 0; k < 3; k++) made[3 * i + k] = low[k] + step * numbers[3 * numbers[3 * corners + i] + k];
+    return made;
+}
+
 class Draft {
     constructor(live, photos, scene, changed) {
         Object.assign(this, {live, photos, scene, changed, picture: null, running: 0, about: ''});
@@ -19,7 +32,10 @@ class Draft {
         if (!this.scene.things) return;
         const masks = [];
         for (const [id, m] of Object.entries(this.scene.things.photos)) masks.push([id, m, await unpack(m.parts)]);
-        for (const t of this.scene.things.list) this.live.call('live_thing', t.name, ...t.middle, t.radius, t.hangs);
+        for (const [i, t] of this.scene.things.list.entries()) {
+            this.live.call('live_thing', t.name, ...t.middle, t.radius, t.hangs);
+            if (t.shape) this.live.fillCorners(i, cornersOf(t.shape, await unpack(t.shape.parts)));
+        }
         for (const [id, m, cells] of masks)
             if (names.includes(id)) this.live.fillMask(names.indexOf(id), m.columns, m.rows, cells);
     }
@@ -137,7 +153,7 @@ class Draft {
         this.about = `Right of the border: a draft of what make remodel draws. ${share(all -
             counts.stays)} of the picture changes` +
             (counts.unseen ? `; striped: ${share(counts.unseen)} that no photo shows` : '') +
-            `. Left out: moved furniture and objects at their new places, new light.` +
-            (this.scene.things ? '' : ' Furniture counts as part of the walls until make things found it.');
+            `. Not in the draft: new light, and shadows of what comes or goes.` +
+            (this.scene.things ? '' : ' Furniture counts as part of the walls, and cannot move, until make things found it; then make draw again.');
     }
 }

@@ -15,7 +15,7 @@ class App {
         this.path = `scenes/${scene.name}/`;
         const texts = {};
         for (const [name, text] of Object.entries(scene.files)) {
-            if (name.startsWith(this.path)) texts[name.slice(this.path.length)] = text;
+            if (name.startsWith(this.path) && !name.endsWith('.obj')) texts[name.slice(this.path.length)] = text;
             else if (name) system.files.set(name, encode.encode(text));
         }
         texts['model.txt'] ??= '';

@@ -86,9 +86,21 @@ class Live {
         if (at) new Uint8Array(this.c.memory.buffer, at, columns * rows).set(cells.subarray(0, columns * rows));
     }
 
+    /* nine numbers a triangle */
+    fillCorners(thing, corners) {
+        const at = this.c.live_thing_corners(thing, corners.length / 9);
+        if (at) new Float32Array(this.c.memory.buffer, at, corners.length).set(corners);
+    }
+
     gone() {
         const count = this.c.live_draft_gone();
         return count > 0 ? [...this.numbers(count)] : [];
+    }
+
+    /* [{thing: its number, -1: an object, at}, ...] of what stands at a new place */
+    placed() {
+        const count = this.c.live_draft_placed(), n = count > 0 ? [...this.numbers(4 * count)] : [];
+        return Array.from({length: Math.max(0, count)}, (_, i) => ({thing: n[4 * i], at: n.slice(4 * i + 1, 4 * i + 4)}));
     }
 
     /* {left, top, scale} of plan.svg */

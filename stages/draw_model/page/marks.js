@@ -241,6 +241,8 @@ class Marks {
         }
     }
 
+    isMarked(name) { return this.statements('things.txt').some((w) => /^(thing|flat)$/.test(w[0]) && w[1] === name); }
+
     edit(list) {
         for (const w of list.filter((w) => /^(clear|keep)$/.test(w[0]))) {
             const at = w.indexOf('in'), from = w.indexOf('from'), n = at > 0 ? this.numbers(w, at + 2) : [];
@@ -264,7 +266,13 @@ class Marks {
             count++;
             this.dot(t.middle, `${t.name} goes`, 'gone');
         });
-        if (things.length) this.say(`${count} of ${things.length} pieces of furniture leave their places.`);
+        const placed = this.app.draft.ready ? this.app.live.placed() : [], objects = placed.filter((p) => p.thing < 0);
+        for (const p of placed) this.dot(p.at, p.thing < 0 ? 'object' : `${things[p.thing].name} here`, 'placed');
+        if (things.length) this.say(`${count} of ${things.length} pieces of furniture leave their places` +
+            `${placed.length > objects.length ? `; ${placed.length - objects.length} stand at new ones` : ''}.`);
+        for (const w of list.filter((w) => (w[0] === 'move' || w[0] === 'copy') && things.length))
+            if (this.isMarked(w[1]) && !things.some((t) => t.name === w[1]))
+                this.say(`${w[1]}: not in the draft; make things, then make draw, show it.`);
     }
 
     /* ------------------------------------------------------------------------------------------------------- plan */

@@ -25,15 +25,35 @@ static void where(double at[2], int photo, double x, double y, double z)
     at[1] = 150 + 200 * (eye[2] - z) / away;
 }
 
-static void begin(const char *edit)
+/* Furniture: a panel 0.4 m wide at x, 0.5 m before the south wall and 0.9 m high. */
+static void add_panel(const char *name, double x)
 {
-    char text[256], path[512];
-    if (live_begin(scratch_path("views"), scratch_path("axes.txt"), "", "")) fail_msg("%s", live_error());
+    const float a = (float)x - 0.2f, b = (float)x + 0.2f;
+    const float corners[2][9] = {{a, 0.5f, 0, b, 0.5f, 0, b, 0.5f, 0.9f}, {a, 0.5f, 0, b, 0.5f, 0.9f, a, 0.5f, 0.9f}};
+    assert_int_equal(live_thing(name, x, 0.5, 0.3, 0.37, 0), 0);
+    const int thing = live_draft_gone() - 1;
+    float *to = live_thing_corners(thing, 2);
+    assert_non_null(to);
+    memcpy(to, corners, sizeof corners);
+}
+
+static void draft(const char *edit, const char *things)
+{
+    char text[256], path[512], folder[512], names[512] = "";
     snprintf(text, sizeof text, "remodel-script 1\n%s\n", edit);
     snprintf(path, sizeof path, "%s", scratch_write("edits/e.txt", text));
+    snprintf(folder, sizeof folder, "%s", scratch_path("edits"));
+    snprintf(text, sizeof text, "remodel-marked-things 1\n%s", things);
+    if (*things) snprintf(names, sizeof names, "%s", scratch_write("things.txt", text));
     char *model = strdup(scratch_path("model.txt"));
-    if (live_build(model, "", path, "", "") || live_draft(model, "")) fail_msg("%s", live_error());
+    if (live_build(model, names, path, folder, "") || live_draft(model, names)) fail_msg("%s", live_error());
     free(model);
+}
+
+static void begin(const char *edit)
+{
+    if (live_begin(scratch_path("views"), scratch_path("axes.txt"), "", "")) fail_msg("%s", live_error());
+    draft(edit, "");
 }
 
 /* The cell of a photo that is so fine that its middle is the pixel. */
@@ -114,6 +134,84 @@ static void furniture_stays_or_goes(void **state)
     assert_pixel(cell_at(A, at), A, at);
 }
 
+/* A panel at x = 1.4 goes to x = 2.8: there a sees it as b sees it where it was, because b looks at it more as a does. */
+static void furniture_stands_at_its_new_place(void **state)
+{
+    double at[2], from[2];
+    (void)state;
+    begin("remove chest");
+    add_panel("sofa", 1.4);
+    memset(live_mask(A, 1, 1), 1, 1);
+    memset(live_mask(B, 1, 1), 1, 1);
+    draft("remove chest\nmove sofa by 1.4 0", "thing sofa in a 200 200\n");
+    where(at, A, 2.7, 0.5, 0.7);
+    where(from, B, 1.3, 0.5, 0.7);
+    assert_pixel(cell_at(A, at), B, from);
+    assert_int_equal(live_draft_placed(), 1);
+    const double *n = live_numbers();
+    assert_true(n[0] == 0 && fabs(n[1] - 2.8) < 1e-9 && fabs(n[2] - 0.5) < 1e-9);
+    /* turned by half a turn: its left end is its right one, and its back is seen, which no photo shows from there: a
+     * panel has no thickness, so the nearest photo counts */
+    draft("remove chest\nmove sofa by 1.4 0 turn 180", "thing sofa in a 200 200\n");
+    where(from, B, 1.5, 0.5, 0.7);
+    const double *cell = cell_at(A, at);
+    assert_int_equal((int)cell[0], PIXEL);
+    if ((int)cell[1] == A) where(from, A, 1.5, 0.5, 0.7);
+    assert_float_equal(cell[2], from[0], 0.05);
+    assert_float_equal(cell[3], from[1], 0.05);
+}
+
+/* A copy; the first one stays, and stands before it. */
+static void furniture_that_stays_hides_a_copy_behind_it(void **state)
+{
+    double at[2], from[2];
+    (void)state;
+    begin("remove chest");
+    add_panel("sofa", 1.4);
+    memset(live_mask(A, 1, 1), 1, 1);
+    memset(live_mask(B, 1, 1), 1, 1);
+    draft("remove chest\ncopy sofa as other by 0.1 -0.2", "thing sofa in a 200 200\n");
+    assert_int_equal(live_draft_placed(), 1);
+    where(at, A, 1.4, 0.5, 0.7);
+    assert_pixel(cell_at(A, at), A, at);
+    draft("remove chest\ncopy sofa as other by 0.1 0.2", "thing sofa in a 200 200\n");
+    where(at, A, 1.4, 0.7, 0.7); /* before it: 0.1 left of where the first one has it */
+    where(from, A, 1.3, 0.5, 0.7);
+    const double *cell = cell_at(A, at);
+    if ((int)cell[1] == B) where(from, B, 1.3, 0.5, 0.7);
+    assert_pixel(cell, (int)cell[1], from);
+}
+
+/* A thing that no photo shows is striped at its new place. */
+static void furniture_that_no_mask_shows_is_unseen(void **state)
+{
+    double at[2];
+    (void)state;
+    begin("remove chest");
+    add_panel("sofa", 1.4);
+    draft("remove chest\nmove sofa by 1.4 0", "thing sofa in a 200 200\n");
+    where(at, A, 2.7, 0.5, 0.7);
+    assert_int_equal((int)cell_at(A, at)[0], UNSEEN);
+}
+
+/* A square of 0.4 m that faces north, its colour brightest where it faces the camera. */
+static void an_object_is_a_shaded_shape(void **state)
+{
+    double at[2];
+    (void)state;
+    begin("remove chest");
+    scratch_write("edits/card.obj", "v -0.2 0 0\nv -0.2 0 0.4\nv 0.2 0 0.4\nv 0.2 0 0\nf 1 2 3 4\n");
+    draft("remove chest\nobject card card.obj at 2.8 0.5 0.5 matt 0.2 0.4 0.6", "");
+    where(at, A, 2.7, 0.5, 0.7);
+    const double *cell = cell_at(A, at), away = sqrt(0.7 * 0.7 + 1 + 0.55 * 0.55), light = 0.5 + 0.25 / away;
+    assert_int_equal((int)cell[0], COLOUR);
+    for (int c = 0; c < 3; c++) assert_float_equal(cell[2 + c], 0.2 * (c + 1) * light, 1e-4);
+    where(at, A, 2.5, 0.5, 0.7); /* beside it is the wall */
+    assert_int_equal((int)cell_at(A, at)[0], PIXEL);
+    assert_int_equal(live_draft_placed(), 1);
+    assert_true(live_numbers()[0] == -1 && fabs(live_numbers()[3] - 0.7) < 1e-9);
+}
+
 static void a_painted_surface_has_its_colour(void **state)
 {
     double at[2];
@@ -175,6 +273,10 @@ int main(void)
         cmocka_unit_test(a_wall_that_moves_shows_what_was_on_it),
         cmocka_unit_test(what_comes_to_light_is_taken_from_another_photo),
         cmocka_unit_test(furniture_stays_or_goes),
+        cmocka_unit_test(furniture_stands_at_its_new_place),
+        cmocka_unit_test(furniture_that_stays_hides_a_copy_behind_it),
+        cmocka_unit_test(furniture_that_no_mask_shows_is_unseen),
+        cmocka_unit_test(an_object_is_a_shaded_shape),
         cmocka_unit_test(a_painted_surface_has_its_colour),
         cmocka_unit_test(outdoors_is_looked_up_by_direction),
         cmocka_unit_test(two_photos_share_places),
