@@ -45,12 +45,43 @@ runTests({
         check(/box box1 has no top, because no ceiling was found; add "top NUMBER" to the line/.test(await hand.refusal()), await hand.refusal());
     },
 
-    async a_length_says_what_a_unit_is(hand) {
-        await hand.begin(WALLS);
+    /* 2 units are 5 m: the page counts in metres at once, scripts follow, and undo restores their bytes. */
+    async a_length_makes_the_page_count_in_metres(hand) {
+        const edit = 'remodel-script 1\nmove west by 0.4 # more\nbox chest from 1 1 to 2 1.5 top 0.8 turn 30\ncolour box/chest 0.1 0.2 0.3\n';
+        const text = WALLS.replace('set ceiling 2.5', 'set  ceiling 2.5 # 2.5 high') + 'room main south west north east\n';
+        await hand.begin(text, {'edits/e.txt': edit});
         await hand.page.run("app.openFile('scale.txt')");
         await hand.clicks('mark', 'p0', [at('p0', [1, 0.5, 0]), at('p0', [3, 0.5, 0])]);
+        const before = JSON.stringify(await hand.page.run('app.texts.now')), east = (m) => m.walls.find((w) => w.name === 'east').at;
+        check(Math.abs(east(await hand.model()) + 4) < 1e-9, 'the model is not in units');
         await hand.form('Length', {from: 'mark1', to: 'mark2', length: '5'});
-        const said = await hand.page.run("document.getElementById('meant').textContent");
-        check(/mark1 to mark2: 5 m given, (1\.99|2\.00)\d+ units here: 1 unit is 2\.[45]\d+ m/.test(said), said);
+        const said = await hand.page.run("document.getElementById('meant').textContent"), notes = await hand.page.run("document.getElementById('notes').textContent");
+        check(/mark1 to mark2: 5 m given; the model here has 5\.000 m/.test(said), said);
+        check(/in metres now: 1 unit was 2\.(49|50)\d+ m\. Lengths in edits\/e\.txt, model\.txt were multiplied by 2\.(49|50)/.test(notes), notes);
+        const unit = await hand.page.run('app.unit'), n = (v) => String(+(unit * v).toFixed(5));
+        check(Math.abs(unit - 2.5) < 0.01 && Math.abs(east(await hand.model()) + 4 * unit) < 1e-4, `a unit is ${unit}, east is at ${east(await hand.model())}`);
+        check((await hand.text()).includes(`set  ceiling ${n(2.5)} # 2.5 high\nset thickness ${n(0.1)}\nwall south from ${n(4)} 0 to 0 0\n`), await hand.text());
+        check(await hand.text('edits/e.txt') === `remodel-script 1\nmove west by ${n(0.4)} # more\nbox chest from ${n(1)} ${n(1)} to ${n(2)} ${n(1.5)} top ${n(0.8)} turn 30\ncolour box/chest 0.1 0.2 0.3\n`,
+            await hand.text('edits/e.txt'));
+        const after = JSON.stringify(await hand.page.run('app.texts.now'));
+        await hand.page.run('app.undo()');
+        check(JSON.stringify(await hand.page.run('app.texts.now')) === before && await hand.page.run('app.unit') === 1, 'undo did not restore the texts');
+        check(Math.abs(east(await hand.model()) + 4) < 1e-9, 'undo did not restore the model');
+        await hand.page.run('app.redo()');
+        check(JSON.stringify(await hand.page.run('app.texts.now')) === after && Math.abs(east(await hand.model()) + 4 * unit) < 1e-4, 'redo did not bring it back');
+    },
+
+    /* What a model lacks is said, each part until it is there. */
+    async the_page_says_what_is_missing(hand) {
+        const next = () => hand.page.run("document.getElementById('next').textContent");
+        await hand.begin('remodel-script 1\n', {});
+        await hand.page.run("app.texts.set('scale.txt', ''); app.texts.set('lights.txt', ''); app.openFile('model.txt')");
+        check(/Walls: .*Scale: .*Lamps: /.test(await next()), await next());
+        await hand.begin(WALLS);
+        check(/Rooms: Join walls, then Room/.test(await next()), await next());
+        await hand.page.run("[...document.querySelectorAll('#next button')].find((b) => b.textContent === 'Scale').click()");
+        check(await hand.page.run('app.file') === 'scale.txt' && await hand.page.run('document.activeElement.name') === 'height', 'Scale does not lead to its form');
+        await hand.page.run("app.texts.set('lights.txt', 'remodel-lamps 1\\ndisk a in p0 1 1 rim 2 2\\n')");
+        check(!/Lamps/.test(await next()), await next());
     },
 }, process.argv[2], []);

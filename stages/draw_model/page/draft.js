@@ -30,14 +30,23 @@ class Draft {
     /* The furniture, once the cameras are read. names: of the photos, in the order of the C code. */
     async takeThings(names) {
         if (!this.scene.things) return;
-        const masks = [];
-        for (const [id, m] of Object.entries(this.scene.things.photos)) masks.push([id, m, await unpack(m.parts)]);
-        for (const [i, t] of this.scene.things.list.entries()) {
-            this.live.call('live_thing', t.name, ...t.middle, t.radius, t.hangs);
-            if (t.shape) this.live.fillCorners(i, cornersOf(t.shape, await unpack(t.shape.parts)));
-        }
-        for (const [id, m, cells] of masks)
-            if (names.includes(id)) this.live.fillMask(names.indexOf(id), m.columns, m.rows, cells);
+        this.things = {masks: [], shapes: []};
+        for (const [id, m] of Object.entries(this.scene.things.photos))
+            if (names.includes(id)) this.things.masks.push([names.indexOf(id), m.columns, m.rows, await unpack(m.parts)]);
+        for (const t of this.scene.things.list)
+            this.things.shapes.push(t.shape ? cornersOf(t.shape, await unpack(t.shape.parts)) : null);
+        this.giveThings(1);
+    }
+
+    /* Hands them to the C code, in a unit of which the scene's own one has so many. */
+    giveThings(unit) {
+        if (!this.things) return;
+        this.scene.things.list.forEach((t, i) => {
+            const corners = this.things.shapes[i];
+            this.live.call('live_thing', t.name, ...t.middle.map((v) => unit * v), unit * t.radius, t.hangs);
+            if (corners) this.live.fillCorners(i, unit === 1 ? corners : corners.map((v) => unit * v));
+        });
+        for (const mask of this.things.masks) this.live.fillMask(...mask);
     }
 
     stop() {

@@ -32,6 +32,7 @@ class App {
         this.pointPhotos = [];
         this.selected = [];
         this.refused = null;
+        this.unit = 1; /* of the page's own axes, in what the page counts in now: metres if scale.txt says how many */
         this.hasPoints = scene.files['out/points'] !== undefined;
         this.marks = new Marks(this);
     }
@@ -57,10 +58,70 @@ class App {
         const kept = this.store.restore();
         if (kept.length) this.say(`Taken back from this browser, not saved yet: ${kept.join(', ')}.`);
         if (this.store.changedSince.length) this.say(`Changed on disk meanwhile: ${this.store.changedSince.join(', ')}. Undo shows that.`);
-        this.texts.watch(() => this.changed());
+        this.texts.watch((name) => this.changed(name));
         this.openFile('model.txt');
         this.openPhoto(0);
         this.loadPoints();
+    }
+
+    /* ------------------------------------------------------------------------------------------------------- scale */
+
+    /* The page was made without a scale, and scale.txt gives one now. */
+    isScaledHere() { return this.ownAxes !== undefined && this.unit !== 1; }
+
+    /* Counts in metres as soon as scale.txt says how long something is, as make axes will; scripts follow. */
+    rescale(texts) {
+        const path = 'out/model/axes.txt', own = this.ownAxes ?? new TextDecoder().decode(this.system.files.get(path));
+        if (!/^scale \S+ unknown$/m.test(own) || this.waiting) return;
+        const ratio = this.marks.metres(), to = ratio ? this.unit * ratio : 1, by = to / this.unit;
+        if (Math.abs(by - 1) < 1e-7) return;
+        this.ownAxes = own;
+        const all = (numbers) => numbers.split(' ').map((n) => n === 'none' ? n : n * to).join(' ');
+        const now = to === 1 ? own : own.replace(/^(translation|ceiling|thickness|error floor|error ceiling) (.*)$/gm, (_, key, n) => `${key} ${all(n)}`)
+            .replace(/^scale .*$/m, `scale ${to} metres`).replace(/^error scale none$/m, 'error scale 0');
+        this.system.files.set(path, new TextEncoder().encode(now));
+        this.unit = to;
+        if (this.ply) this.system.files.set('out/points/points.ply', this.ply);
+        const failed = this.begin(!!this.ply);
+        this.system.files.delete('out/points/points.ply');
+        if (failed) return this.refuse(failed);
+        this.draft.giveThings(to);
+        this.picture.forget();
+        if (!texts) return;
+        const changes = {};
+        for (const name of this.texts.names().filter((n) => SCRIPT_FILES.test(n))) {
+            const text = Script.scaled(this.texts.get(name), by);
+            if (text !== this.texts.get(name)) changes[name] = text;
+        }
+        this.texts.follow(changes);
+        this.say(ratio ? `The model is in metres now: 1 unit was ${to.toFixed(4)} m.${Object.keys(changes).length
+            ? ` Lengths in ${Object.keys(changes).join(', ')} were multiplied by ${by.toFixed(4)}.` : ''}`
+            : 'The model is in units without a scale again.');
+    }
+
+    /* What a model of rooms usually has and this one lacks; each line leads to where it is given. */
+    showNext() {
+        const has = (file, words) => Script.statements(this.texts.get(file)).some((s) => words.test(s.words[0]));
+        const go = (file, form) => () => {
+            this.openFile(file);
+            this.forms.openForm(form);
+        };
+        const list = [];
+        if (/^(model|scale|lights)\.txt$/.test(this.file)) {
+            if (!has('model.txt', /^walls?$/)) list.push(['Walls', this.suggested[0].left.length ? 'accept what is suggested below, or drag rectangles' : 'drag rectangles']);
+            else if (!has('model.txt', /^room$/)) list.push(['Rooms', 'Join walls, then Room']);
+            else if (!has('model.txt', /^(door|passage|window)$/)) list.push(['Doors and windows', 'choose one above, and drag round it']);
+            if (!this.live.isMetric() && !has('scale.txt', /^(length|height)$/)) list.push(['Scale', 'give the height of the ceiling, or a length', go('scale.txt', 'Height')]);
+            if (!has('lights.txt', /^(disk|area)$/)) list.push(['Lamps', 'for pictures in new light', go('lights.txt', '')]);
+        }
+        el('next').replaceChildren(...list.map(([what, how, act]) => {
+            const item = document.createElement('li'), name = document.createElement(act ? 'button' : 'b');
+            name.textContent = what;
+            if (act) name.type = 'button', name.onclick = act;
+            item.append(name, `: ${how}`);
+            return item;
+        }));
+        if (list.length) el('next').prepend('Not there yet');
     }
 
     begin(points) {
@@ -77,17 +138,21 @@ class App {
         remodel.points = async (packed) => {
             this.waiting = false;
             if (packed) {
-                this.system.files.set('out/points/points.ply', plyOfPoints(packed, await unpack(packed.parts)));
+                const ply = plyOfPoints(packed, await unpack(packed.parts));
+                if (/^scale \S+ unknown$/m.test(new TextDecoder().decode(this.system.files.get('out/model/axes.txt')))) this.ply = ply; /* for a scale */
+                this.system.files.set('out/points/points.ply', ply);
                 const failed = this.begin(true);
                 if (failed) return this.refuse(failed);
                 this.system.files.delete('out/points/points.ply');
-                this.say(packed.every > 1
-                    ? `Walls by rectangles use one point of ${packed.every} here; make model uses all, and may place them some mm elsewhere.` : 'Ready.');
+                this.say('Ready.');
+                if (packed.every > 1) this.thinned = `Walls by rectangles use one point of ${packed.every} here; make model uses all, and may place them some mm elsewhere.`;
             } else
                 this.say('This scene has no points: draw walls by their feet or by corners.');
             await this.draft.takeThings(this.photos.map((p) => p.id));
             this.picture.forget();
             this.build();
+            this.rescale(false);
+            if (this.unit !== 1) this.changed();
             this.ready = true;
         };
         const script = document.createElement('script');
@@ -101,6 +166,7 @@ class App {
     openFile(name) {
         this.file = name;
         this.points = [];
+        if (!SCRIPT_FILES.test(name)) this.selected = [];
         if (!this.tool.files.test(name)) this.tool = TOOLS.find((t) => t.files.test(name)) || TOOLS[0];
         const marks = ['scale.txt', 'axes_fix.txt', 'lights.txt', 'materials.txt', 'things.txt', 'subjects.txt',
             'masks.txt', 'lri.txt'], says = {'masks.txt': 'masks of photos', 'lri.txt': 'lri.txt (reference images)'};
@@ -125,7 +191,8 @@ class App {
             p.isReference)) this.openPhoto(this.photos.findIndex((p) => p.isReference));
     }
 
-    changed() {
+    changed(name) {
+        if (name === 'scale.txt') this.rescale(!this.texts.isUndoing);
         this.showText();
         this.build();
         this.showSuggested();
@@ -134,6 +201,7 @@ class App {
     showSuggested() {
         el('suggested').replaceChildren();
         for (const panel of this.suggested) panel.show();
+        this.showNext();
     }
 
     showText() {
@@ -270,6 +338,7 @@ class App {
 
     notes() {
         const lines = this.system.lines.map((l) => l.replace(/^build_model: /, ''));
+        if (this.thinned && /^wall \S+ in /m.test(this.texts.get(this.file))) lines.push(this.thinned);
         el('notes').textContent = lines.join('\n') || this.said || '';
     }
 
@@ -285,6 +354,7 @@ class App {
     colour() { return (this.forms.colour || '#3355aa').match(/\w\w/g).map((h) => parseInt(h, 16) / 255)
         .map((v) => Script.number(v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4, 3)).join(' '); }
     named() { return (this.forms.name || '').trim(); }
+    newLamp() { return this.forms.name = this.newName('lamp'); }
     markName(kind) { return this.named() || this.newName(kind); }
     onFloor() { return this.file === 'scale.txt'; }
 

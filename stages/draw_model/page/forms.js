@@ -46,6 +46,13 @@ class FormsPanel {
         this.open = '';
     }
 
+    openForm(label) {
+        this.open = label;
+        this.show();
+        const field = [...this.element.querySelectorAll('form input')].find((f) => !f.value);
+        if (field && label) field.focus();
+    }
+
     show() {
         const buttons = document.createElement('div');
         this.element.replaceChildren(buttons);
@@ -58,7 +65,8 @@ class FormsPanel {
             button.onclick = () => {
                 this.open = this.open === form[0] ? '' : form[0];
                 this.show();
-                const first = this.element.querySelector('form input');
+                const fields = [...this.element.querySelectorAll('form input')];
+                const first = fields.find((f) => !f.value) || fields[0];
                 if (first) first.focus();
             };
             buttons.append(button);
@@ -69,9 +77,20 @@ class FormsPanel {
         if (EDIT_FILES.test(this.app.file)) options.append(field('colour', 'colour to paint', this.colour ||
             '#3355aa', 'color', (v) => { this.colour = v; }));
         if (this.app.file === 'lri.txt') this.cornerFields(options);
-        else if (/^(scale|axes_fix|lights|materials)\.txt$/.test(this.app.file)) options.append(field('name', 'name of the lamp, mark or material',
-            this.name || '', 'text', (v) => { this.name = v; }));
+        else if (/^(scale|axes_fix|lights|materials)\.txt$/.test(this.app.file)) this.nameField(options);
         if (options.children.length) this.element.append(options);
+    }
+
+    /* Which lamp, mark or material the next gesture is of; those that there are, are proposed. */
+    nameField(form) {
+        const what = {'lights.txt': 'lamp that is lit or unlit', 'materials.txt': 'name of the material'}[this.app.file] ||
+            'name of the next mark, if it shall have one';
+        const name = field('name', what, this.name || '', 'text', (v) => { this.name = v; });
+        const known = document.createElement('datalist');
+        known.id = 'known-names';
+        for (const n of Script.names(this.app.texts.get(this.app.file))) known.append(new Option(n));
+        name.querySelector('input').setAttribute('list', 'known-names');
+        form.append(name, known);
     }
 
     /* Which corner of which opening the next click is. */
@@ -144,6 +163,9 @@ class SuggestedPanel {
         this.after = notes;
     }
 
+    /* A line of the suggestion, in the unit that the page counts in. */
+    line(statement) { return this.app.unit === 1 ? statement : Script.scaled(statement, this.app.unit); }
+
     show() {
         const box = document.createElement('details'), list = document.createElement('ol'),
             title = document.createElement('summary');
@@ -157,7 +179,7 @@ class SuggestedPanel {
         all.type = 'button';
         all.textContent = 'Accept all';
         all.onclick = () => {
-            const lines = this.left.splice(0).map((s) => s.statement);
+            const lines = this.left.splice(0).map((s) => this.line(s.statement));
             this.app.write(lines.join('\n'));
         };
         box.append(title, ...(this.left.length ? [all] : []), list);
@@ -167,27 +189,34 @@ class SuggestedPanel {
             row.textContent = text;
             list.append(row);
         };
-        this.left.forEach(({statement, notes}, i) => {
-            notes.forEach(say);
+        const offer = (statement, drop) => {
             const row = document.createElement('li'), text = document.createElement('input'),
                 yes = document.createElement('button'), no = document.createElement('button');
-            text.value = statement;
+            text.value = this.line(statement);
             text.setAttribute('aria-label', 'suggested statement');
             yes.type = no.type = 'button';
             yes.textContent = 'Accept';
             no.textContent = 'Drop';
             yes.onclick = () => {
-                this.left.splice(i, 1);
+                drop();
                 this.app.write(text.value.trim());
             };
             no.onclick = () => {
-                this.left.splice(i, 1);
+                drop();
                 this.show();
             };
             row.append(text, yes, no);
             list.append(row);
+        };
+        this.left.forEach(({statement, notes}, i) => {
+            notes.forEach(say);
+            offer(statement, () => this.left.splice(i, 1));
         });
-        this.after.forEach(say);
+        /* what is doubtful stands there as a comment; it can be accepted too */
+        this.after.forEach((note, i) => {
+            if (/^(wall|door|passage|window|room|box|join|extend|disk|area|lit|unlit|line) \S+ .*\d/.test(note)) offer(note, () => this.after.splice(i, 1));
+            else say(note);
+        });
         this.element.append(box);
     }
 }

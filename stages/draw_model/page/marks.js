@@ -96,9 +96,12 @@ class Marks {
     scale(list) {
         const places = this.places(list), metric = this.app.live.isMetric();
         for (const [name, at] of places) this.dot(at, name, 'mark');
-        const compare = (what, found, wanted) => this.say(metric
-            ? `${what}: ${wanted} m given; the model as it was made has ${found.toFixed(3)} m.`
-            : `${what}: ${wanted} m given, ${found.toFixed(4)} units here: 1 unit is ${(wanted / found).toFixed(4)} m.`);
+        this.ratios = [];
+        const compare = (what, found, wanted) => {
+            if (wanted > 0 && found > 0) this.ratios.push([found, wanted]);
+            this.say(metric ? `${what}: ${wanted} m given; the model ${this.app.isScaledHere() ? 'here' : 'as it was made'} has ${found.toFixed(3)} m.`
+                : `${what}: ${wanted} m given, ${found.toFixed(4)} units here: 1 unit is ${(wanted / found).toFixed(4)} m.`);
+        };
         for (const w of list) {
             const a = places.get(w[1]), b = places.get(w[2]);
             if (w[0] === 'length' && a && b && +w[3] > 0) {
@@ -113,6 +116,15 @@ class Marks {
                 this.say(`${w.join(' ')}: its marks have no place yet.`);
         }
         if (list.length && !list.some((w) => /^(length|height)$/.test(w[0]))) this.say('Give a length between two marks, or a height: buttons above.');
+    }
+
+    /* How many metres a length of 1 is, by scale.txt, as find_axes has it; 0: it does not say. */
+    metres() {
+        const other = new Marks(this.app);
+        other.shapes = [], other.sentences = [], other.ratios = [];
+        other.scale(other.statements('scale.txt'));
+        const sum = (f) => other.ratios.reduce((s, r) => s + f(r), 0);
+        return other.ratios.length ? sum(([d, m]) => d * m) / sum(([d]) => d * d) : 0;
     }
 
     axes(list) {
@@ -190,9 +202,12 @@ class Marks {
                 else if (middle) this.shapes.push({form: 'lamp', at: [middle], label: w[1], kind: 'lamp'});
                 if (middle && beta > 0) this.cone({at: middle, normal: lamp ? lamp.normal : [0, 0, -1], beta}, w[1]);
                 const marks = (kind) => list.filter((m) => m[0] === kind && m[1] === w[1]).length;
+                const count = {lit: marks('lit'), unlit: marks('unlit'), line: marks('line')};
+                const more = !count.lit ? '; enough for make lights, surer with Lit rectangles'
+                    : w[0] === 'disk' && !count.line ? '; a Cone line finds its cone' : '';
                 this.say(`${w[1]}: ${lamp
                     ? `radiance ${lamp.radiance.map((v) => +v.toPrecision(3)).join(' ')}, cone of ${lamp.beta.toFixed(1)} degrees, as make lights fitted it`
-                    : middle ? 'make lights will fit its radiance' : 'its pixel shows no surface of the model: build the rooms first'}; ${marks('lit')} lit, ${marks('unlit')} unlit, ${marks('line')} cone lines.`);
+                    : middle ? 'make lights will fit its radiance' : 'its pixel shows no surface of the model: build the rooms first'}; ${count.lit} lit, ${count.unlit} unlit, ${count.line} cone lines${more}.`);
             } else if (/^(lit|unlit)$/.test(w[0]) && n.length > 1)
                 this.dot(this.surface(view, n.length > 3 ? (n[0] + n[2]) / 2 : n[0],
                     n.length > 3 ? (n[1] + n[3]) / 2 : n[1]), w[0], w[0]);
@@ -206,7 +221,7 @@ class Marks {
             const at = w.indexOf('in'), n = at < 0 ? [] : this.numbers(w, at + 2);
             if (w[0] === 'thing' && n.length > 1) {
                 const found = this.app.scene.things && this.app.scene.things.list.find((t) => t.name === w[1]);
-                this.dot(found ? found.middle : this.surface(w[at + 1], n[0], n[1]), w[1], 'thing');
+                this.dot(found ? found.middle.map((v) => this.app.unit * v) : this.surface(w[at + 1], n[0], n[1]), w[1], 'thing');
                 this.say(found ? `${w[1]} was found.` : `${w[1]}: make things looks for it.`);
             } else if (w[0] === 'flat' && n.length > 5) this.area(this.surfaces(w[at + 1], n), w[1], 'thing');
         }
@@ -264,7 +279,7 @@ class Marks {
         things.forEach((t, i) => {
             if (!gone[i]) return;
             count++;
-            this.dot(t.middle, `${t.name} goes`, 'gone');
+            this.dot(t.middle.map((v) => this.app.unit * v), `${t.name} goes`, 'gone');
         });
         const placed = this.app.draft.ready ? this.app.live.placed() : [], objects = placed.filter((p) => p.thing < 0);
         for (const p of placed) this.dot(p.at, p.thing < 0 ? 'object' : `${things[p.thing].name} here`, 'placed');

@@ -15,6 +15,7 @@ class Texts {
         this.done = [];
         this.undone = [];
         this.watchers = [];
+        this.isUndoing = false;
     }
 
     get(name) { return this.now[name] ?? ''; }
@@ -34,6 +35,24 @@ class Texts {
         this.put(name, text);
     }
 
+    /* Changes other files as a part of the change that was made last: both are undone together. */
+    follow(changes) {
+        const last = this.done[this.done.length - 1];
+        if (!last) return;
+        const first = new Map((last.others || []).map((c) => [c.name, c.before]));
+        last.others = [...(last.others || []).filter((c) => !(c.name in changes)),
+            ...Object.entries(changes).map(([name, after]) => ({name, after,
+                before: first.has(name) ? first.get(name) : this.now[name]}))];
+        for (const [name, after] of Object.entries(changes)) this.put(name, after);
+    }
+
+    step(change, which) {
+        this.isUndoing = true;
+        for (const c of [...(change.others || []), change]) this.put(c.name, c[which]);
+        this.isUndoing = false;
+        return change.name;
+    }
+
     put(name, text) {
         if (text === undefined) delete this.now[name];
         else this.now[name] = text;
@@ -45,16 +64,14 @@ class Texts {
         const change = this.done.pop();
         if (!change) return null;
         this.undone.push(change);
-        this.put(change.name, change.before);
-        return change.name;
+        return this.step(change, 'before');
     }
 
     redo() {
         const change = this.undone.pop();
         if (!change) return null;
         this.done.push(change);
-        this.put(change.name, change.after);
-        return change.name;
+        return this.step(change, 'after');
     }
 
     /* Puts a statement before a line, which counts from 1. */
@@ -101,6 +118,25 @@ const Script = {
         return kind + n;
     },
 
+    /* A script in another unit: its lengths times a factor. Pixels, angles, colours and factors stay. */
+    scaled(text, factor) {
+        const most = {from: 2, to: 2, at: 3, by: 3, thickness: 1, foot: 1, top: 1, bottom: 1, left: 1, right: 1, front: 1,
+            back: 1, floor: 1, ceiling: 1, slab: 1, glass: 1, leaf: 1, ridge: 1, off: 1};
+        return text.split('\n').map((line) => {
+            const at = line.indexOf('#'), code = at < 0 ? line : line.slice(0, at);
+            const isSlope = /^\s*(slope|gable)\s/.test(code);
+            let left = 0, word = 0;
+            return code.replace(/\S+/g, (w) => {
+                word++;
+                if (!/^[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d+)?$/i.test(w)) {
+                    left = word === 2 && !/^set/.test(code.trim()) ? 0 : most[w] || (isSlope ? 1 : 0);
+                    return w;
+                }
+                return left-- > 0 ? Script.number(factor * w, 5) : w;
+            }) + (at < 0 ? '' : line.slice(at));
+        }).join('\n');
+    },
+
     /* What a text has of pixels in photos: {line, photo, kind: rectangle|line|corners, points}. */
     pixels(text) {
         const list = [];
@@ -110,7 +146,11 @@ const Script = {
                 if (words[i] !== 'in') continue;
                 const numbers = [];
                 for (let k = i + 2; k < words.length && /^[-+.0-9e]+$/.test(words[k]); k++) numbers.push(+words[k]);
-                if (words[i - 1] === 'corner' && numbers.length >= 2)
+                const rim = words[0] === 'disk' ? words.indexOf('rim') : -1;
+                if (rim > 0 && numbers.length >= 2)
+                    list.push({line, photo: words[i + 1], kind: 'line', points: [numbers.slice(0, 2),
+                        [+words[rim + 1], +words[rim + 2]]]});
+                else if (words[i - 1] === 'corner' && numbers.length >= 2)
                     corners.push({photo: words[i + 1], points: [numbers.slice(0, 2)]});
                 else if (numbers.length >= 4) {
                     const points = [];
