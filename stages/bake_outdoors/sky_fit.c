@@ -4,13 +4,11 @@
  * general sky has 15 types, from overcast to clear, which were found by measuring skies. The type that agrees best with
  * what is seen is scaled to it, each colour on its own.
  *
- * Mathematics. [CIE 2003]: at angle z from the zenith and chi from the sun, luminance is f(chi) phi(z), with gradation
- * phi(z) = 1 + a exp(b / cos z) and indicatrix f(chi) = 1 + c (exp(d chi) - exp(d pi / 2)) + e cos^2 chi. Of all types,
- * the scale is the weighted median of the quotients seen / standard, and the misfit the weighted mean deviation of
- * their logarithms. A narrow window may fit types that differ by a factor of three elsewhere: a type is charged
- * FARTHER times the logarithm by which its zenith differs from what is seen, and GUESSED if the sun's direction had to
- * be guessed, from a grid. So a sky that is as bright everywhere as what is seen is believed unless the pictures say
- * otherwise.
+ * Mathematics. The types are those of [CIE 2003] (common/daylight/sky_standard.h). For each of them the scale is the
+ * weighted median of the quotients seen / standard, and the misfit the weighted mean deviation of their logarithms. A
+ * narrow window may fit types that differ by a factor of three elsewhere: a type is charged FARTHER times the logarithm
+ * by which its zenith differs from what is seen, and GUESSED if the sun's direction had to be guessed, from a grid. So
+ * a sky that is as bright everywhere as what is seen is believed unless the pictures say otherwise.
  *
  * What differs from the source: nothing is guessed to be brighter than the sky that is seen. Around the sun and at the
  * zenith of an overcast sky that is too dark; but what shines there does not reach the pictures, and an error there
@@ -27,24 +25,7 @@
 enum { AZIMUTHS = 16 };
 static const double FARTHER = 0.03, GUESSED = 0.01; /* of a misfit */
 static const double SEEN = 0.95;                    /* percentile that counts as the brightest */
-static const double HORIZON = 0.01;                 /* cosine to the zenith below which the sky stays the same */
 static const double elevations[] = {10, 25, 40, 60};
-
-/* The standard's table 1: a, b of the gradation, c, d, e of the indicatrix. */
-static const double types[SKY_TYPES][5] = {
-    {4, -0.70, 0, -1, 0},       {4, -0.70, 2, -1.5, 0.15},  {1.1, -0.8, 0, -1, 0},       {1.1, -0.8, 2, -1.5, 0.15},
-    {0, -1, 0, -1, 0},          {0, -1, 2, -1.5, 0.15},     {0, -1, 5, -2.5, 0.30},      {0, -1, 10, -3, 0.45},
-    {-1, -0.55, 2, -1.5, 0.15}, {-1, -0.55, 5, -2.5, 0.30}, {-1, -0.55, 10, -3, 0.45},   {-1, -0.32, 10, -3, 0.45},
-    {-1, -0.32, 16, -3, 0.30},  {-1, -0.15, 16, -3, 0.30},  {-1, -0.15, 24, -2.8, 0.15},
-};
-
-double sky_standard(int type, struct vec3 direction, struct vec3 to_sun)
-{
-    const double *t = types[type - 1], chi = acos(clamp(vec3_dot(direction, to_sun), -1, 1));
-    const double gradation = 1 + t[0] * exp(t[1] / fmax(direction.z, HORIZON));
-    const double indicatrix = 1 + t[2] * (exp(t[3] * chi) - exp(t[3] * PI / 2)) + t[4] * cos(chi) * cos(chi);
-    return gradation * indicatrix;
-}
 
 static double luminance_level(const double level[3])
 {
@@ -85,8 +66,6 @@ static double try_type(double *misfit, const struct fitting *f, int type, struct
     *misfit = sum / weights;
     return *misfit + FARTHER * fabs(log(sky_standard(type, zenith, to_sun)) - mean / weights);
 }
-
-static bool needs_sun(int type) { return types[type - 1][2] != 0 || types[type - 1][4] != 0; }
 
 static void take_if_better(struct sky_fit *best, double *least, const struct fitting *f, int type, struct vec3 to_sun,
                            double charge)
@@ -135,7 +114,7 @@ enum status sky_fit_samples(struct sky_fit *best, const struct sky_sample *sampl
     if (!err->status) {
         take_if_better(best, &least, &f, SKY_UNIFORM, zenith, 0);
         for (int type = 1; type <= SKY_TYPES; type++) {
-            if (needs_sun(type) && !to_sun)
+            if (sky_standard_needs_sun(type) && !to_sun)
                 try_suns(best, &least, &f, type);
             else
                 take_if_better(best, &least, &f, type, to_sun ? *to_sun : zenith, 0);

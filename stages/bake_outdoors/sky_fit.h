@@ -2,12 +2,8 @@
 #ifndef REMODEL_SKY_FIT_H
 #define REMODEL_SKY_FIT_H
 
-#include <stdbool.h>
-
 #include "common/base/err.h"
-#include "common/math/vec.h"
-
-enum { SKY_TYPES = 15, SKY_UNIFORM = 5 };
+#include "common/daylight/sky_standard.h"
 
 /* A piece of sky that some picture shows. */
 struct sky_sample {
@@ -23,10 +19,6 @@ struct sky_fit {
     double brightest;   /* luminance of the brightest sky that was seen, but for a twentieth of it */
     double misfit;      /* mean absolute deviation of the samples' logarithms */
 };
-
-/* Luminance of a standard sky in a unit direction, not normalised: f(angle to the sun) phi(angle to the zenith). Below
- * the horizon it is that of the horizon. */
-double sky_standard(int type, struct vec3 direction, struct vec3 to_sun);
 
 /* Fits type, level and, if it is not given (NULL), the direction of the sun. Samples may be in any order; count 0 gives
  * type 0. ST_NOMEM. */
