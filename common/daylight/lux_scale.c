@@ -8,65 +8,77 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/daylight/sky_luminance.h"
 #include "common/product/product.h"
 
 enum { NAME_SIZE = 256 };
 static const double LEAST = 1e-30, MOST = 1e30;
+static const char *const sources[] = {"unknown", "exposure", "measurements"};
 static const char *const kinds[] = {"illuminance", "luminance"};
 
-static enum status read_interval(struct lux_interval *i, struct textfile *t, struct err *err)
+/* The index of a word among `count`. */
+static enum status read_choice(int *choice, const char *const *words, int count, const char *wanted, struct textfile *t,
+                               struct err *err)
 {
-    if (textfile_number(t, "a scale in cd/m2", LEAST, MOST, &i->scale, err) ||
-        textfile_number(t, "the lower end of its interval", LEAST, i->scale, &i->low, err))
-        return err->status;
-    return textfile_number(t, "the upper end of its interval", i->scale, MOST, &i->high, err);
+    char *word;
+    if (textfile_word(t, wanted, &word, err)) return err->status;
+    for (*choice = 0; *choice < count; ++*choice)
+        if (!strcmp(word, words[*choice])) return ST_OK;
+    return textfile_error(t, err, word, "%s", wanted);
+}
+
+static enum status read_scale(double *scale, struct textfile *t, struct err *err)
+{
+    return textfile_number(t, "a scale in cd/m2", 0, MOST, scale, err);
+}
+
+static enum status read_ends(struct lux_interval *i, struct textfile *t, struct err *err)
+{
+    return textfile_number(t, "the lower end of the interval, above 0 and up to the scale", i->scale > 0 ? LEAST : 0,
+                           i->scale, &i->low, err) ||
+                   textfile_number(t, "the upper end of the interval, from the scale on", i->scale,
+                                   i->scale > 0 ? MOST : 0, &i->high, err) ||
+                   textfile_end(t, err)
+               ? err->status
+               : ST_OK;
 }
 
 static enum status read_head(struct lux_scale *s, struct textfile *t, struct err *err)
 {
-    char *from;
+    int from = 0;
     int64_t photos;
-    if (textfile_expect_line(t, "scale", err) ||
-        textfile_number(t, "a scale in cd/m2", LEAST, MOST, &s->is.scale, err) || textfile_end(t, err) ||
-        textfile_expect_line(t, "interval", err) ||
-        textfile_number(t, "the lower end of the interval", LEAST, s->is.scale, &s->is.low, err) ||
-        textfile_number(t, "the upper end of the interval", s->is.scale, MOST, &s->is.high, err) ||
-        textfile_end(t, err) || textfile_expect_line(t, "from", err) ||
-        textfile_word(t, "\"exposure\" or \"measurements\"", &from, err))
+    if (textfile_expect_line(t, "scale", err) || read_scale(&s->is.scale, t, err) || textfile_end(t, err) ||
+        textfile_expect_line(t, "interval", err) || read_ends(&s->is, t, err) || textfile_expect_line(t, "from", err) ||
+        read_choice(&from, sources, 3, "unknown, exposure or measurements", t, err))
         return err->status;
-    s->measured = !strcmp(from, "measurements");
-    if (!s->measured && strcmp(from, "exposure"))
-        return textfile_error(t, err, from, "\"exposure\" or \"measurements\"");
+    s->from = (enum lux_source)from;
+    if ((s->from == LUX_UNKNOWN) != (s->is.scale == 0))
+        return textfile_error(t, err, sources[from], "unknown for a scale of 0, and for no other");
     if (textfile_end(t, err) || textfile_expect_line(t, "exposure", err) ||
-        textfile_int(t, "the number of photos", 0, INT_MAX, &photos, err))
+        textfile_int(t, "the number of photos", 0, INT_MAX, &photos, err) || read_scale(&s->by_exposure.scale, t, err))
         return err->status;
     s->photos = (int)photos;
-    if (s->photos) {
-        if (read_interval(&s->by_exposure, t, err)) return err->status;
-    } else {
-        for (int i = 0; i < 3; i++)
-            if (textfile_expect(t, "0", err)) return err->status;
-    }
-    return textfile_end(t, err);
+    if ((s->photos == 0) != (s->by_exposure.scale == 0))
+        return textfile_error(t, err, NULL, "a scale of 0 without photos, and above 0 with some");
+    return read_ends(&s->by_exposure, t, err);
 }
 
 static enum status read_measurement(struct lux_measurement *m, struct textfile *t, struct err *err)
 {
-    char name[NAME_SIZE], *kind, *use;
+    static const char *const uses[] = {"used", "off"};
+    char name[NAME_SIZE];
+    int kind = 0, use = 0;
     if (textfile_word_into(t, "the name of a measurement", name, sizeof name, err) ||
-        textfile_word(t, "illuminance or luminance", &kind, err))
+        read_choice(&kind, kinds, 2, "illuminance or luminance", t, err))
         return err->status;
-    if (strcmp(kind, kinds[LUX_ILLUMINANCE]) && strcmp(kind, kinds[LUX_LUMINANCE]))
-        return textfile_error(t, err, kind, "illuminance or luminance");
-    m->kind = strcmp(kind, kinds[LUX_LUMINANCE]) ? LUX_ILLUMINANCE : LUX_LUMINANCE;
     if (textfile_number(t, "what was measured, in lx or cd/m2", LEAST, MOST, &m->value, err) ||
         textfile_number(t, "the same in the scene's unit", LEAST, MOST, &m->light, err) ||
         textfile_number(t, "the deviation expected", 0, MOST, &m->expected, err) ||
-        textfile_double(t, "the deviation found", &m->deviation, err) || textfile_word(t, "used or off", &use, err))
+        textfile_double(t, "the deviation found", &m->deviation, err) ||
+        read_choice(&use, uses, 2, "used or off", t, err) || textfile_end(t, err))
         return err->status;
-    m->off = !strcmp(use, "off");
-    if (!m->off && strcmp(use, "used")) return textfile_error(t, err, use, "used or off");
-    if (textfile_end(t, err)) return err->status;
+    m->kind = (enum lux_kind)kind;
+    m->off = use == 1;
     m->name = strdup(name);
     return m->name ? ST_OK : err_nomem(err, "a name", strlen(name) + 1);
 }
@@ -84,7 +96,8 @@ enum status lux_scale_read(struct lux_scale *s, const char *path, struct provena
         s->measurements[s->count] = (struct lux_measurement){0};
         if (!read_measurement(&s->measurements[s->count], &t, err)) s->count++;
     }
-    if (!err->status && s->measured && !s->count) textfile_error(&t, err, NULL, "a line \"measurement ...\"");
+    if (!err->status && s->from == LUX_MEASUREMENTS && !s->count)
+        textfile_error(&t, err, NULL, "a line \"measurement ...\"");
     textfile_release(&t);
     if (err->status) lux_scale_release(s);
     return err->status;
@@ -94,8 +107,9 @@ enum status lux_scale_write(const struct lux_scale *s, const char *path, const s
 {
     struct outfile f = {0};
     if (product_begin(&f, PRODUCT_LUX_SCALE, path, prov, err)) return err->status;
-    fprintf(f.fp, "scale %.17g\ninterval %.17g %.17g\nfrom %s\n", s->is.scale, s->is.low, s->is.high,
-            s->measured ? "measurements" : "exposure");
+    if (s->is.scale > 0)
+        fprintf(f.fp, "# in Radiance's unit, by %g lm/W: %.6g W/m2/sr\n", WHITE_EFFICACY, s->is.scale / WHITE_EFFICACY);
+    fprintf(f.fp, "scale %.17g\ninterval %.17g %.17g\nfrom %s\n", s->is.scale, s->is.low, s->is.high, sources[s->from]);
     fprintf(f.fp, "exposure %d %.17g %.17g %.17g\n", s->photos, s->by_exposure.scale, s->by_exposure.low,
             s->by_exposure.high);
     for (int i = 0; !err->status && i < s->count; i++) {

@@ -4,7 +4,7 @@
  *   remodel-lux-scale 1
  *   scale 413.2                       cd/m2
  *   interval 360.1 474.2              95 %
- *   from measurements                 or: exposure
+ *   from measurements                 or: exposure; unknown, with scale and interval 0
  *   exposure 24 389.1 194.6 778.2     photos whose exposure is known, and scale and interval by it; 0 0 0 0: none
  *   measurement NAME illuminance 420 1.017 0.09 -0.02 used
  *                                     what was measured, lx or cd/m2; the same in the scene's unit; the deviations, as
@@ -16,6 +16,7 @@
 
 #include "common/base/provenance.h"
 
+enum lux_source { LUX_UNKNOWN, LUX_EXPOSURE, LUX_MEASUREMENTS };
 enum lux_kind { LUX_ILLUMINANCE, LUX_LUMINANCE };
 
 struct lux_measurement {
@@ -32,15 +33,15 @@ struct lux_interval {
 
 /* {0} is the empty state; everything is owned. */
 struct lux_scale {
-    struct lux_interval is;
-    bool measured;
+    struct lux_interval is; /* 0: unknown */
+    enum lux_source from;
     int photos;                      /* whose exposure is known */
     struct lux_interval by_exposure; /* 0 without them */
     struct lux_measurement *measurements;
     int count;
 };
 
-/* ST_DATA with file and line: a damaged line, a scale that is not above 0 or outside of its interval. */
+/* ST_DATA with file and line: a damaged line, a scale outside of its interval, or of 0 that is not unknown. */
 enum status lux_scale_read(struct lux_scale *s, const char *path, struct provenance *prov, struct err *err);
 enum status lux_scale_write(const struct lux_scale *s, const char *path, const struct provenance *prov,
                             struct err *err);

@@ -21,7 +21,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         unlink(path);
         return 0;
     }
-    if (!(s.is.low > 0 && s.is.low <= s.is.scale && s.is.scale <= s.is.high && isfinite(s.is.high))) abort();
+    if (s.from != LUX_UNKNOWN && !(s.is.low > 0)) abort();
+    if (!(s.is.low >= 0 && s.is.low <= s.is.scale && s.is.scale <= s.is.high && isfinite(s.is.high))) abort();
     if (lux_scale_write(&s, path, NULL, &err)) { /* a name with a line break */
         if (!strstr(err.text, "line break")) abort();
     } else {
