@@ -26,6 +26,7 @@
 
 #include "common/math/ceres_least_squares.h"
 #include "common/math/inverse.h"
+#include "common/math/student.h"
 #include "stages/hdr_merge/three_points.h"
 
 enum {
@@ -216,14 +217,6 @@ static void refine(struct candidate *kept, int *count, struct rays *r, const str
 
 /* ----------------------------------------------------------------------------------------------------------- errors */
 
-/* The quantile 0.975 of Student's distribution for n degrees of freedom, within 1 % for n > 1: its expansion about the
- * normal distribution, whose quantile is z. n = 0: z. */
-static double student(int n)
-{
-    const double z = 1.96, by = n > 0 ? 1.0 / n : 0;
-    return z + by * (2.372 + by * (2.823 + by * (2.556 + by * 1.59)));
-}
-
 /* The covariance of r->start for residuals of standard error 1, in the unknowns' units. False: the marks leave a
  * change of the pose open. */
 static bool find_covariance(double covariance[UNKNOWNS][UNKNOWNS], const struct rays *r)
@@ -270,8 +263,8 @@ static bool measure(struct resection_pose *to, struct rays *r, const struct cand
     to->degrees = sqrt(angles2 / r->count) * 180 / M_PI;
     if (!find_covariance(covariance, r)) return false;
     const int freedom = 2 * r->count - UNKNOWNS;
-    const double spread = freedom ? student(freedom) * sqrt(c->squares / freedom) : 0;
-    const double width = fmax(spread, student(0) * click), reach = width * r->extent;
+    const double spread = freedom ? student_quantile(freedom) * sqrt(c->squares / freedom) : 0;
+    const double width = fmax(spread, student_quantile(0) * click), reach = width * r->extent;
     to->error = vec3_scale(vec3_make(sqrt(covariance[3][3]), sqrt(covariance[4][4]), sqrt(covariance[5][5])), reach);
     for (int i = 0; i < 3; i++)
         for (int j = 0; j < 3; j++) turn.m[i][j] = covariance[i][j];
