@@ -135,7 +135,7 @@ static void say(const struct job *j)
                      100 * fabs(expm1(s->measurements[i].deviation)),
                      s->measurements[i].deviation > 0 ? "more" : "less");
     if (s->from == LUX_MEASUREMENTS && s->photos)
-        log_note("by exposures it were %.4g (%.4g to %.4g); with the constant %.4g they would agree", e->scale, e->low,
+        log_note("exposures alone would give %.4g (%.4g to %.4g); they agree if the constant is %.4g", e->scale, e->low,
                  e->high, j->params.constant * s->is.scale / e->scale);
     if (s->from == LUX_MEASUREMENTS && s->photos && (s->is.high < e->low || s->is.low > e->high))
         log_warn(

@@ -15,6 +15,7 @@
     X(irradiance_error, double, 0.09, 0, 1, "",                                                                 \
       "relative standard error of gathered irradiance beside that of its rays")                                 \
     X(luminance_error, double, 0.05, 0, 1, "", "relative standard error of a photographed luminance")           \
+    X(common_error, double, 0.05, 0, 1, "", "relative standard error that all measurements of a scene share")   \
     X(off, double, 3, 1, 100, "", "deviation, in standard errors, beyond which a measurement is named as off")
 
 struct calibrate_params {
