@@ -76,18 +76,24 @@ static void see_surface(struct light_look *seen, const struct model_field *f, co
                                 f->model.mesh.face_count + 2 * k + back};
 }
 
-static void see_outdoors(struct light_look *seen, const struct model_field *f, struct vec3 from, struct vec3 direction)
+enum light_source model_field_outdoors(struct rgb *radiance, const struct model_field *f, struct vec3 from,
+                                       struct vec3 direction)
 {
     float rgb[3];
+    enum light_source seen = LIGHT_SKY;
+    if (!field_openings_look(rgb, &f->openings, from, direction)) {
+        const enum outdoors_source source = outdoors_sample(rgb, &f->outdoors, direction);
+        seen = !f->outdoors.rgb ? LIGHT_NONE : source == OUTDOORS_GUESSED ? LIGHT_SKY_GUESSED : LIGHT_SKY;
+    }
+    *radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
+    return seen;
+}
+
+static void see_outdoors(struct light_look *seen, const struct model_field *f, struct vec3 from, struct vec3 direction)
+{
     seen->distance = INFINITY;
     seen->face = -1;
-    if (field_openings_look(rgb, &f->openings, from, direction)) {
-        seen->source = LIGHT_SKY;
-    } else {
-        const enum outdoors_source source = outdoors_sample(rgb, &f->outdoors, direction);
-        seen->source = !f->outdoors.rgb ? LIGHT_NONE : source == OUTDOORS_GUESSED ? LIGHT_SKY_GUESSED : LIGHT_SKY;
-    }
-    seen->radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
+    seen->source = model_field_outdoors(&seen->radiance, f, from, direction);
 }
 
 /* glossy: whether materials count */
@@ -228,17 +234,27 @@ static void span_face(const struct solid_mesh *mesh, int index, struct vec3 *cen
 }
 
 /* A pane lets the sky in if a ray from its middle meets the model on one side only: that is indoors. */
+bool model_field_pane(struct emitter *pane, const struct model_field *f, int body)
+{
+    const struct solid_body *b = &f->model.mesh.bodies[body];
+    if (!pane_name(b) || !b->faces) return false;
+    const int largest = largest_face(&f->model.mesh, b);
+    const struct solid_face *face = &f->model.mesh.faces[largest];
+    struct ray_hit hit;
+    *pane = (struct emitter){.kind = EMITTER_QUAD, .luminance = 1, .beta = 0.5 * PI};
+    span_face(&f->model.mesh, largest, &pane->centre, &pane->x, &pane->y);
+    const struct vec3 off = vec3_scale(face->normal, PANE_REACH * model_rays_size(&f->model));
+    const bool front = ray_scene_hit(&f->model.rays, vec3_add(pane->centre, off), face->normal, &hit);
+    const bool back =
+        ray_scene_hit(&f->model.rays, vec3_sub(pane->centre, off), vec3_scale(face->normal, -1), &hit);
+    pane->normal = vec3_scale(face->normal, front ? 1 : -1);
+    return front != back;
+}
+
 static void add_pane(struct model_field *f, const struct solid_body *body)
 {
-    const int largest = largest_face(&f->model.mesh, body);
-    const struct solid_face *face = &f->model.mesh.faces[largest];
-    struct vec3 centre, x, y;
-    struct ray_hit hit;
-    span_face(&f->model.mesh, largest, &centre, &x, &y);
-    const struct vec3 off = vec3_scale(face->normal, PANE_REACH * model_rays_size(&f->model));
-    const bool front = ray_scene_hit(&f->model.rays, vec3_add(centre, off), face->normal, &hit);
-    const bool back = ray_scene_hit(&f->model.rays, vec3_sub(centre, off), vec3_scale(face->normal, -1), &hit);
-    if (front != back) add_opening(f, centre, x, y, vec3_scale(face->normal, front ? 1 : -1));
+    struct emitter e;
+    if (model_field_pane(&e, f, (int)(body - f->model.mesh.bodies))) add_opening(f, e.centre, e.x, e.y, e.normal);
 }
 
 static void add_openings(struct model_field *f)

@@ -93,12 +93,14 @@ static enum status add_surfaces(struct light_change *c, struct err *err)
     struct thing_surfaces *all = &c->added;
     const size_t count = (size_t)o->count + (size_t)t->count;
     all->triangles = malloc((count + 1) * sizeof *all->triangles);
+    all->thing = calloc(count + 1, sizeof *all->thing);
     all->radiance = malloc((count + 1) * sizeof *all->radiance);
-    if (!all->triangles || !all->radiance) return err_nomem(err, "triangles", count * sizeof *all->triangles);
+    if (!all->triangles || !all->radiance || !all->thing) return err_nomem(err, "triangles", count * sizeof *all->triangles);
     if (o->count) memcpy(all->triangles, o->triangles, (size_t)o->count * sizeof *all->triangles);
     if (o->count) memcpy(all->radiance, o->radiance, (size_t)o->count * sizeof *all->radiance);
     if (t->count) memcpy(all->triangles + o->count, t->triangles, (size_t)t->count * sizeof *all->triangles);
     if (t->count) memcpy(all->radiance + o->count, t->radiance, (size_t)t->count * sizeof *all->radiance);
+    if (t->count) memcpy(all->thing + o->count, t->thing, (size_t)t->count * sizeof *all->thing);
     all->count = (int)count;
     c->surfaces = thing_surfaces_of_field(all);
     c->old_things = thing_surfaces_of_field(&c->things.before);
@@ -111,7 +113,7 @@ enum status light_change_read(struct light_change *c, const struct light_change_
     *c = (struct light_change){0};
     if (!model_axes_read(&c->axes, files->axes, prov, err) && !texture_map_read(&c->map, files->map, prov, err) &&
         !read_objects(c, files, prov, err) &&
-        !light_things_read(&c->things, files->things, &c->map, files->base, files->edited, prov, err) &&
+        !light_things_read(&c->things, files->things, &c->map, files->all_things, files->base, files->edited, prov, err) &&
         !add_surfaces(c, err) && !read_fields(c, files, prov, err) &&
         !face_areas_make(&c->old, &c->before.model.mesh, err))
         unite_emitters(c, err);
@@ -127,8 +129,7 @@ void light_change_release(struct light_change *c)
     texture_map_release(&c->map);
     light_objects_release(&c->objects);
     light_things_release(&c->things);
-    free(c->added.triangles);
-    free(c->added.radiance);
+    thing_surfaces_release(&c->added);
     face_areas_release(&c->old);
     free(c->emitters);
     *c = (struct light_change){0};

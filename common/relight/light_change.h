@@ -25,6 +25,7 @@ struct light_change_files {
     const char *scene;        /* scenes/NAME, the folder of the objects' meshes */
     const char *things;       /* folder of the scene's things; NULL: furniture throws no shadows */
     const char *object_light; /* their light, as update_vita wrote it; NULL: not known yet */
+    bool all_things;          /* furniture counts also where the edit changes none of it */
 };
 
 /* {0} is the empty state; everything is owned. It must not move once it was read. */

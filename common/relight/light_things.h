@@ -10,6 +10,7 @@
 struct thing_surfaces {
     struct vec3 (*triangles)[3];
     struct rgb (*radiance)[2];
+    int *thing; /* of each triangle: its id in the list of things; NULL: there is none */
     int count;
 };
 
@@ -24,13 +25,13 @@ struct light_things {
     struct placed_things placed;
     struct thing_surfaces before, after;
     bool *stays;  /* of each triangle of `before`: `after` has it at the same place */
-    bool changes; /* the edit changes a thing; otherwise both are empty */
+    bool changes; /* the edit changes a thing, or all are wanted; otherwise both are empty */
 };
 
-/* folder: of the things; NULL: none. before, after: model.txt of both models. What hangs from the ceiling is left out,
- * as lamps do, which have lights of their own. Each side of a thing has one radiance, the mean of its pixels. The
- * caller releases t in each case. */
-enum status light_things_read(struct light_things *t, const char *folder, const struct texture_map *map,
+/* folder: of the things; NULL: none. before, after: model.txt of both models. always: read them also if the edit changes
+ * none. What hangs from the ceiling is left out, as lamps do, which have lights of their own. Each side of a thing has
+ * one radiance, the mean of its pixels. The caller releases t in each case. */
+enum status light_things_read(struct light_things *t, const char *folder, const struct texture_map *map, bool always,
                               const char *before, const char *after, struct provenance *prov, struct err *err);
 void light_things_release(struct light_things *t);
 
