@@ -16,6 +16,7 @@
 #include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/light/frame.h"
+#include "common/gather/strategy.h"
 #include "common/light/sobol.h"
 
 enum { SAMPLES = 4, GLANCES = 64, OUTER_PLACES = 8 };

@@ -1,0 +1,188 @@
+/* level_sums.c - see level_sums.h.
+ *
+ * Skies. Each patch of the sky has its mean luminance, times what the glass lets through; patch by patch they add up to
+ * the sky's illuminance (sky_luminance.h). The sun's direct light at a point is that of a ray in its own direction. What
+ * it reflects comes from beams in the middles of patches: the three nearest, weighted by the inverse of their distance,
+ * because what a room reflects changes slowly with the sun's place. */
+#include "stages/light_levels/level_sums.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/math/numbers.h"
+#include "stages/light_levels/rows.h"
+
+enum { NEAREST = 3 };
+
+/* ------------------------------------------------------------------------------------------------------------- weights */
+
+enum status state_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err)
+{
+    const size_t count = (size_t)groups->count + 1;
+    *w = (struct state_weights){.relative = calloc(count, sizeof *w->relative),
+                                .absolute = calloc(count, sizeof *w->absolute)};
+    return w->relative && w->absolute ? ST_OK : err_nomem(err, "groups of light", count * sizeof *w->relative);
+}
+
+void state_weights_release(struct state_weights *w)
+{
+    free(w->relative);
+    free(w->absolute);
+    *w = (struct state_weights){0};
+}
+
+/* Shares the sun out among the beams around it. */
+static void add_beams(struct state_weights *w, const struct light_groups *g)
+{
+    int near[NEAREST] = {-1, -1, -1};
+    double away[NEAREST] = {INFINITY, INFINITY, INFINITY}, sum = 0;
+    for (int k = SKY_GROUND + 1; k < g->patches.count; k++) {
+        const double cosine = vec3_dot(sky_patch_direction(&g->patches, k), w->to_sun);
+        const double angle = acos(clamp(cosine, -1, 1));
+        int at = NEAREST;
+        while (at > 0 && angle < away[at - 1]) at--;
+        if (at == NEAREST) continue;
+        for (int i = NEAREST - 1; i > at; i--) {
+            away[i] = away[i - 1];
+            near[i] = near[i - 1];
+        }
+        away[at] = angle;
+        near[at] = k;
+    }
+    for (int i = 0; i < NEAREST; i++) sum += 1 / (away[i] + 1e-6);
+    for (int i = 0; i < NEAREST; i++)
+        for (int v = 0; v < g->windows_count; v++)
+            w->absolute[groups_beam(g, v, near[i])] += w->sun / (away[i] + 1e-6) / sum;
+}
+
+void state_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
+                           const struct levels_params *params)
+{
+    double luminance[144 + 2];
+    sky_patch_luminances(luminance, &groups->patches, sky);
+    for (int v = 0; v < groups->windows_count; v++) {
+        const double glass = v + 1 < groups->windows_count ? params->glass : 1;
+        for (int k = 0; k < groups->patches.count; k++)
+            w->absolute[groups_patch(groups, v, k)] += glass * luminance[k];
+    }
+    w->has_absolute = true;
+    w->to_sun = sky->to_sun;
+    w->sun = sky->to_sun.z > 0 ? params->glass * sky->sun : 0;
+    if (w->sun > 0) add_beams(w, groups);
+}
+
+static enum status set_lamps(struct state_weights *w, const struct light_state *s, const struct state_list *states,
+                             const struct light_groups *g, struct err *err)
+{
+    const struct light_list *l = &g->field->lights;
+    for (int i = 0; i < l->lamp_count; i++) w->relative[i] = s->lamps;
+    w->relative[g->rest] = s->lamps;
+    for (int k = 0; k < s->named_count; k++) {
+        int i = 0;
+        while (i < l->lamp_count && strcmp(l->lamps[i].name, s->named[k].name) != 0) i++;
+        if (i == l->lamp_count)
+            return err_set(err, ST_DATA,
+                           "%s:%d: found the lamp %s, which the scene does not have; wanted one of lights/lights.txt.",
+                           states->path, s->line, s->named[k].name);
+        w->relative[i] = s->named[k].factor;
+    }
+    return ST_OK;
+}
+
+enum status state_weights_make(struct state_weights *w, const struct light_state *state, const struct state_list *states,
+                               const struct light_groups *groups, const struct levels_params *params, struct err *err)
+{
+    struct sun_position sun;
+    struct sky_luminance sky;
+    if (state_weights_init(w, groups, err) || set_lamps(w, state, states, groups, err)) return err->status;
+    for (int v = 0; state->sky == STATE_SKY_PHOTOGRAPHED && v < groups->windows_count; v++)
+        w->relative[groups->sky + v] = w->relative[groups->sun + v] = 1;
+    if (state->sky == STATE_SKY_OVERCAST) {
+        sky = sky_of_type(SKY_TRADITIONAL, vec3_make(0, 0, 1), state->horizontal, 0, params->ground);
+        state_weights_add_sky(w, &sky, groups, params);
+    } else if (state->sky == STATE_SKY_TIME) {
+        sun_position_find(&sun, &states->site, &state->time);
+        sky = sky_of_cover(state->cover, &sun, states->north, params->ground);
+        state_weights_add_sky(w, &sky, groups, params);
+    }
+    for (int i = 0; i < groups->count; i++) w->has_relative |= w->relative[i] > 0;
+    return ST_OK;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- points */
+
+enum status level_points_make(struct level_points *p, const struct level_light *l, const struct gather_point *points,
+                              int count, const struct levels_params *params, struct err *err)
+{
+    const struct light_groups *g = &l->groups;
+    const size_t values = (size_t)count * (size_t)g->count;
+    struct light_rows direct;
+    float *found;
+    *p = (struct level_points){points, count, g->count, malloc((values + 1) * sizeof(float)),
+                               malloc((values + 1) * sizeof(float))};
+    level_light_at(&found, &direct, l, points, count, params, err);
+    if (!err->status && (!p->whole || !p->direct)) err_nomem(err, "light at points", values * sizeof *p->whole);
+    for (size_t i = 0; !err->status && i < values; i++) {
+        const int group = (int)(i % (size_t)g->count);
+        p->direct[i] = luminance_of(direct.direct + 3 * i);
+        p->whole[i] = luminance_of(found + 3 * i);
+        if (group >= g->beam) p->whole[i] = fmaxf(0, p->whole[i] - p->direct[i]);
+    }
+    free(found);
+    rows_release(&direct);
+    return err->status;
+}
+
+void level_points_release(struct level_points *p)
+{
+    free(p->whole);
+    free(p->direct);
+    *p = (struct level_points){0};
+}
+
+void level_points_sum(double to[2], const struct level_points *p, int point, const struct state_weights *w,
+                      const struct model_field *field)
+{
+    const float *own = p->whole + (size_t)point * (size_t)p->groups;
+    to[0] = to[1] = 0;
+    for (int g = 0; g < p->groups; g++) {
+        to[0] += w->relative[g] * (double)own[g];
+        to[1] += w->absolute[g] * (double)own[g];
+    }
+    if (w->sun > 0 && rows_sees_sun(field, p->points[point], w->to_sun))
+        to[1] += w->sun * vec3_dot(p->points[point].normal, w->to_sun);
+}
+
+/* ------------------------------------------------------------------------------------------------------------- patches */
+
+static void sum_groups(double to[2], const float *values, const struct state_weights *w, int groups)
+{
+    to[0] = to[1] = 0;
+    for (int g = 0; g < groups; g++) {
+        const double y = (double)luminance_of(values + 3 * (size_t)g);
+        to[0] += w->relative[g] * y;
+        to[1] += w->absolute[g] * y;
+    }
+}
+
+enum status level_patches_sum(double (*to)[2], const struct level_light *l, const struct state_weights *w,
+                              struct err *err)
+{
+    const int count = l->patches.count, groups = l->groups.count;
+    const size_t stride = 3 * (size_t)groups;
+    double(*radiance)[2] = malloc(((size_t)count + 1) * sizeof *radiance);
+    if (!radiance) return err_nomem(err, "patches", (size_t)count * sizeof *radiance);
+    for (int i = 0; i < count; i++) {
+        sum_groups(radiance[i], l->radiosity.radiance + stride * (size_t)i, w, groups);
+        sum_groups(to[i], l->rows.direct + stride * (size_t)i, w, groups);
+    }
+    for (int i = 0; i < count; i++) {
+        const struct light_row *row = &l->rows.rows[i];
+        for (int e = 0; e < row->count; e++)
+            for (int k = 0; k < 2; k++)
+                to[i][k] += PI * (double)row->entries[e].share * radiance[row->entries[e].patch][k];
+    }
+    free(radiance);
+    return ST_OK;
+}

@@ -1,0 +1,46 @@
+/* level_sums.h - light of a state of lamps and sky: a sum over groups. */
+#ifndef REMODEL_LEVELS_SUMS_H
+#define REMODEL_LEVELS_SUMS_H
+
+#include "stages/light_levels/level_scene.h"
+#include "stages/light_levels/state_list.h"
+
+/* What each group is multiplied by, luminance by luminance: `relative` in the unit of the photographs, `absolute` in lx or
+ * cd/m2. Owned. */
+struct state_weights {
+    double *relative, *absolute;
+    bool has_relative, has_absolute; /* some weight is not 0 */
+    struct vec3 to_sun;
+    double sun; /* lx on a surface that faces it, within the panes; 0: none */
+};
+
+/* The caller releases w in each case. ST_DATA: a lamp that the scene does not have, with file and line. */
+enum status state_weights_make(struct state_weights *w, const struct light_state *state, const struct state_list *states,
+                               const struct light_groups *groups, const struct levels_params *params, struct err *err);
+/* The same of a sky and its sun alone. */
+void state_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
+                           const struct levels_params *params);
+enum status state_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err);
+void state_weights_release(struct state_weights *w);
+
+/* Illuminance at points, by group: luminances of what level_light_at() found. Everything is owned. */
+struct level_points {
+    const struct gather_point *points; /* not owned */
+    int count, groups;
+    float *whole, *direct; /* of each point and group; in `whole` beams have only what is reflected */
+};
+
+enum status level_points_make(struct level_points *p, const struct level_light *l, const struct gather_point *points,
+                              int count, const struct levels_params *params, struct err *err);
+void level_points_release(struct level_points *p);
+
+/* A point's illuminance in a state: to[0] in the unit of the photographs, to[1] in lx. The sun's direct light comes from
+ * a ray in its own direction. */
+void level_points_sum(double to[2], const struct level_points *p, int point, const struct state_weights *w,
+                      const struct model_field *field);
+
+/* The same of all patches; to: of each. The sun's light is that of the beams around it. ST_NOMEM. */
+enum status level_patches_sum(double (*to)[2], const struct level_light *l, const struct state_weights *w,
+                              struct err *err);
+
+#endif

@@ -1,0 +1,34 @@
+/* levels.h - what a run of light_levels works with. */
+#ifndef REMODEL_LEVELS_H
+#define REMODEL_LEVELS_H
+
+#include "stages/light_levels/sensors.h"
+#include "stages/light_levels/sheet.h"
+
+struct levels_files {
+    struct light_change_files light;
+    const char *plan, *places, *states, *points, *before, *scale;
+};
+
+/* Everything but the paths is owned. */
+struct levels_job {
+    struct levels_files files;
+    const char *out;
+    struct levels_params params;
+    struct provenance prov;
+    struct level_scene scene;
+    struct model_plan plan;
+    struct place_list places;
+    struct state_list states;
+    struct level_light light;
+    struct sensors sensors;
+    struct level_points levels; /* of the sensors */
+    struct light_sheet sheet, before;
+    double scale; /* cd/m2 of a radiance of 1; 0: unknown */
+};
+
+/* Reads what the files name, computes, and writes the products below `out`. */
+enum status levels_run(struct levels_job *j, struct err *err);
+void levels_release(struct levels_job *j);
+
+#endif

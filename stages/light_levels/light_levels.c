@@ -1,0 +1,56 @@
+/* light_levels.c - how bright rooms and places are: the light of lamps, windows, sky and sun in groups.
+ *
+ * reads   MODEL, PLAN                         the unedited model, and its rooms or those of the edit
+ *         VITA/atlas.txt, page0.exr, ...      the radiance of its faces
+ *         OUTDOORS, LIGHTS, REFERENCES/ID.exr what lies outside; lamps and openings
+ *         THINGS/things.txt, volume.exr       furniture
+ *         EDITED, MAP, OBJECTS, SCENE/FILE.obj of an edit: its model, textures and objects
+ *         PLACES, STATES                      named places; states of lamps and sky
+ *         BEFORE                              the sheet of the unedited room
+ * writes  OUT/sheet.tsv                       illuminance of rooms, faces and places in each state */
+#include "common/base/cli.h"
+#include "stages/light_levels/levels.h"
+
+#define PARAM_STRUCT struct levels_params
+static const struct param levels_param_table[] = {LEVELS_PARAMS(PARAM_ROW) PARAM_END};
+#undef PARAM_STRUCT
+
+int main(int argc, char **argv)
+{
+    struct levels_job job = {.params = LEVELS_PARAMS_DEFAULT};
+    struct light_change_files *light = &job.files.light;
+    const struct cli_opt opts[] = {
+        CLI_ABOUT("How bright rooms and places are, by groups of light."),
+        CLI_STR("model", &light->base, CLI_REQUIRED, "the unedited model, model.txt"),
+        CLI_STR("plan", &job.files.plan, CLI_REQUIRED, "rooms of the model, or of the edited one, plan.txt"),
+        CLI_STR("axes", &light->axes, CLI_REQUIRED, "the models' frame, axes.txt"),
+        CLI_STR("vita", &light->vita, CLI_REQUIRED, "folder of the unedited view-independent atlas"),
+        CLI_STR("outdoors", &light->outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
+        CLI_STR("lights", &light->lights, CLI_OPTIONAL, "lamps and openings, lights.txt"),
+        CLI_STR("references", &light->references, CLI_OPTIONAL,
+                "folder of the lighting reference images that openings name"),
+        CLI_STR("things", &light->things, CLI_OPTIONAL, "folder of the things, furniture that throws shadows and reflects"),
+        CLI_STR("edited", &light->edited, CLI_OPTIONAL, "the edited model, model.txt; without it, the unedited room"),
+        CLI_STR("map", &light->map, CLI_OPTIONAL, "with --edited: where its faces take their texture, texture.txt"),
+        CLI_STR("objects", &light->objects, CLI_OPTIONAL, "synthetic objects of the edit, objects.txt"),
+        CLI_STR("scene", &light->scene, CLI_OPTIONAL, "folder of the objects' meshes"),
+        CLI_STR("places", &job.files.places, CLI_OPTIONAL, "named places, places.txt"),
+        CLI_STR("states", &job.files.states, CLI_OPTIONAL, "states of lamps and sky, states.txt"),
+        CLI_STR("before", &job.files.before, CLI_OPTIONAL, "sheet.tsv of the unedited room, to compare with"),
+        CLI_STR("points", &job.files.points, CLI_OPTIONAL,
+                "instead: print the photographed irradiance at points, X Y Z NX NY NZ a line, in the views' frame"),
+        CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write to"),
+        CLI_PARAMS(levels_param_table, &job.params, NULL),
+        CLI_END,
+    };
+    struct err err = ERR_INIT;
+    if (cli_parse(argc, argv, "light_levels", opts, &job.prov, &err) == CLI_RUN) {
+        if (light->edited && !light->map)
+            err_set(&err, ST_USAGE, "--edited needs --map, the texture.txt of the edit.");
+        else
+            levels_run(&job, &err);
+    }
+    err_report(&err);
+    levels_release(&job);
+    return err_exit_code(&err);
+}

@@ -1,0 +1,59 @@
+/* rules.c - light levels of the room as it is, and with EDIT after an edit. */
+#include "common/graph/scene_rules.h"
+
+static void say_room(struct graph *g, const struct scene_facts *f, const char *model)
+{
+    const char *lights = scene_lights(g, f);
+    rule_takes(g, "--model", PATH(g, MODEL));
+    rule_takes(g, "--plan", PATH(g, PLAN, .model = model));
+    rule_takes(g, "--axes", PATH(g, AXES));
+    rule_takes_vita(g);
+    rule_takes_things(g, f);
+    rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
+    rule_takes(g, "--lights", lights);
+    if (lights && rule_needs_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
+}
+
+/* Files that people may write, and take away again. */
+static void say_scripts(struct graph *g, const struct scene_facts *f)
+{
+    static const char *const names[] = {"places", "states"};
+    (void)f;
+    for (int i = 0; i < 2; i++) {
+        const char *path = graph_scene_file(g, graph_text(g, "%s.txt", names[i]));
+        if (path) rule_takes(g, graph_text(g, "--%s", names[i]), path);
+        rule_needs(g, graph_stamp(g, graph_text(g, "%s.txt", names[i]), path ? path : "none"));
+    }
+}
+
+static void edit_rule(struct graph *g, const struct scene_facts *f, const char *edit)
+{
+    const char *edited = graph_text(g, "remodel/%s", edit), *lux = graph_text(g, "lux/%s", edit);
+    const char *sheet = PATH(g, LIGHT_SHEET, .lux = lux);
+    graph_goal(g, "lux", sheet);
+    graph_rule(g, "%s", edit);
+    rule_makes(g, sheet);
+    say_room(g, f, edited);
+    rule_takes(g, "--edited", PATH(g, MODEL, .model = edited));
+    rule_takes(g, "--map", PATH(g, TEXTURE_MAP, .model = edited));
+    rule_takes(g, "--objects", PATH(g, OBJECTS, .model = edited));
+    rule_option(g, "--scene", f->folder);
+    say_scripts(g, f);
+    rule_takes(g, "--before", PATH(g, LIGHT_SHEET));
+    rule_option(g, "--out", FOLDER(g, LIGHT_SHEET, .lux = lux));
+}
+
+RULES(light_levels)
+{
+    graph_step(g, "lux", STEP_ONE, "vita outdoors things");
+    graph_goal(g, "lux", NULL);
+    if (!f->has_model) return;
+    graph_goal(g, "lux", PATH(g, LIGHT_SHEET));
+    graph_rule(g, "room");
+    rule_makes(g, PATH(g, LIGHT_SHEET));
+    say_room(g, f, "model");
+    say_scripts(g, f);
+    rule_option(g, "--out", FOLDER(g, LIGHT_SHEET));
+    for (int i = 0; *scene_setting("EDIT") && i < f->drawn_edits.count; i++)
+        edit_rule(g, f, f->drawn_edits.names[i]);
+}

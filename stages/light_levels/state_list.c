@@ -1,0 +1,196 @@
+/* state_list.c - see state_list.h. */
+#include "stages/light_levels/state_list.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "common/base/array.h"
+#include "common/base/scan.h"
+#include "common/base/textfile.h"
+
+static const double BRIGHTEST = 1e6, MOST_FACTOR = 1000; /* lx */
+enum { YEAR = 2025 };                                     /* of times, which have none: no leap year */
+
+static void release_state(struct light_state *s)
+{
+    for (int i = 0; i < s->named_count; i++) free(s->named[i].name);
+    free(s->named);
+    free(s->name);
+}
+
+void state_list_release(struct state_list *l)
+{
+    for (int i = 0; i < l->count; i++) release_state(&l->items[i]);
+    free(l->items);
+    free(l->path);
+    *l = (struct state_list){0};
+}
+
+/* ---------------------------------------------------------------------------------------------------------- statements */
+
+static enum status read_site(struct state_list *l, struct textfile *t, struct err *err)
+{
+    if (textfile_number(t, "a latitude in degrees", -90, 90, &l->site.latitude, err) ||
+        textfile_number(t, "a longitude in degrees", -180, 180, &l->site.longitude, err) ||
+        textfile_number(t, "hours ahead of UTC", -14, 14, &l->site.time_zone, err))
+        return err->status;
+    l->has_site = true;
+    if (!textfile_more(t)) return ST_OK;
+    if (textfile_expect(t, "north", err)) return err->status;
+    return textfile_number(t, "the azimuth of north in degrees", -360, 360, &l->north, err);
+}
+
+static enum status read_lamp(struct light_state *s, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, "a lamp's name", &word, err) ||
+        array_append(&s->named, (size_t)s->named_count, sizeof *s->named, "lamps", err))
+        return err->status;
+    struct state_lamp *lamp = &s->named[s->named_count];
+    lamp->name = strdup(word);
+    if (!lamp->name) return err_nomem(err, "a name", strlen(word));
+    s->named_count++;
+    return textfile_number(t, "a factor", 0, MOST_FACTOR, &lamp->factor, err);
+}
+
+static enum status read_time(struct light_state *s, const struct state_list *l, struct textfile *t, struct err *err)
+{
+    int64_t month, day;
+    if (!l->has_site)
+        return textfile_error(t, err, "a sky at a time",
+                              "the line `site LATITUDE LONGITUDE ZONE` above it, which says where the sun is");
+    if (textfile_int(t, "a month", 1, 12, &month, err) || textfile_int(t, "a day", 1, 31, &day, err) ||
+        textfile_number(t, "an hour", 0, 24, &s->time.hour, err))
+        return err->status;
+    int known_month, known_day;
+    sun_date_of_day(sun_day_of_year((int)month, (int)day), &known_month, &known_day);
+    if (known_month != month || known_day != day)
+        return textfile_wrong_number(t, (double)day, "a day that this month has", err);
+    s->sky = STATE_SKY_TIME;
+    s->time.year = YEAR;
+    s->time.month = (int)month;
+    s->time.day = (int)day;
+    return ST_OK;
+}
+
+static enum status read_sky(struct light_state *s, const struct state_list *l, struct textfile *t, struct err *err)
+{
+    static const char *const covers[] = {[SKY_COVER_CLEAR] = "clear", [SKY_COVER_PARTLY] = "partly",
+                                         [SKY_COVER_OVERCAST] = "cloudy"};
+    char *word;
+    if (textfile_word(t, "a sky", &word, err)) return err->status;
+    s->sky = STATE_SKY_NONE;
+    if (!strcmp(word, "none")) return ST_OK;
+    if (!strcmp(word, "photographed")) {
+        s->sky = STATE_SKY_PHOTOGRAPHED;
+        return ST_OK;
+    }
+    if (!strcmp(word, "overcast")) {
+        s->sky = STATE_SKY_OVERCAST;
+        return textfile_number(t, "an illuminance in lx", 0, BRIGHTEST, &s->horizontal, err);
+    }
+    for (int i = 0; i < 3; i++)
+        if (!strcmp(word, covers[i])) {
+            s->cover = (enum sky_cover)i;
+            return read_time(s, l, t, err);
+        }
+    return textfile_error(t, err, word,
+                          "none, photographed, overcast LUX, or clear, partly or cloudy with MONTH DAY HOUR");
+}
+
+static enum status read_lamps(struct light_state *s, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, "on or off", &word, err)) return err->status;
+    s->lamps = !strcmp(word, "on");
+    return s->lamps || !strcmp(word, "off") ? ST_OK : textfile_error(t, err, word, "on or off");
+}
+
+static bool has_name(const struct state_list *l, const char *name)
+{
+    for (int i = 0; i < l->count; i++)
+        if (!strcmp(l->items[i].name, name)) return true;
+    return false;
+}
+
+static enum status begin_state(struct state_list *l, const char *name, struct err *err)
+{
+    if (array_append(&l->items, (size_t)l->count, sizeof *l->items, "states", err)) return err->status;
+    l->items[l->count] = (struct light_state){.name = strdup(name), .lamps = true};
+    if (!l->items[l->count].name) return err_nomem(err, "a name", strlen(name));
+    l->count++;
+    return ST_OK;
+}
+
+static enum status read_state(struct state_list *l, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, "a state's name", &word, err)) return err->status;
+    if (!scan_is_name(word))
+        return textfile_error(t, err, word, "a name of letters, digits, _ and -, which does not begin with -");
+    if (has_name(l, word)) return textfile_error(t, err, word, "a name that no other state has");
+    if (begin_state(l, word, err)) return err->status;
+    struct light_state *s = &l->items[l->count - 1];
+    s->line = t->line;
+    while (!err->status && textfile_more(t)) {
+        if (textfile_word(t, "an option", &word, err)) break;
+        if (!strcmp(word, "lamps"))
+            read_lamps(s, t, err);
+        else if (!strcmp(word, "lamp"))
+            read_lamp(s, t, err);
+        else if (!strcmp(word, "sky"))
+            read_sky(s, l, t, err);
+        else
+            textfile_error(t, err, word, "lamps on|off, lamp NAME FACTOR or sky SKY");
+    }
+    return err->status;
+}
+
+static enum status read_line(struct state_list *l, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, "a statement", &word, err)) return err->status;
+    if (!strcmp(word, "site")) {
+        if (!read_site(l, t, err)) textfile_end(t, err);
+        return err->status;
+    }
+    return strcmp(word, "state") != 0 ? textfile_error(t, err, word, "site or state") : read_state(l, t, err);
+}
+
+/* ---------------------------------------------------------------------------------------------------------------- list */
+
+static enum status add_usual(struct state_list *l, struct err *err)
+{
+    static const struct light_state usual[STATES_OF_EVERY_SCENE] = {
+        {.name = "photographed", .lamps = true, .sky = STATE_SKY_PHOTOGRAPHED},
+        {.name = "lamps", .lamps = true},
+        {.name = "daylight", .sky = STATE_SKY_PHOTOGRAPHED},
+        {.name = "overcast", .sky = STATE_SKY_OVERCAST, .horizontal = STATE_OVERCAST_LUX},
+    };
+    for (int i = 0; !err->status && i < STATES_OF_EVERY_SCENE; i++) {
+        if (begin_state(l, usual[i].name, err)) break;
+        char *name = l->items[i].name;
+        l->items[i] = usual[i];
+        l->items[i].name = name;
+    }
+    return err->status;
+}
+
+enum status state_list_read(struct state_list *l, const char *path, struct provenance *prov, struct err *err)
+{
+    struct textfile t = {0};
+    int64_t version;
+    *l = (struct state_list){.north = 90};
+    add_usual(l, err);
+    if (!err->status && path && !provenance_open(prov, "states.txt", &t, path, err)) {
+        l->path = strdup(path);
+        if (!l->path) err_nomem(err, "a path", strlen(path));
+        if (!err->status && !textfile_expect_line(&t, "remodel-states", err) &&
+            !textfile_int(&t, "version", 1, 1, &version, err))
+            textfile_end(&t, err);
+        while (!err->status && textfile_next(&t)) read_line(l, &t, err);
+    }
+    textfile_release(&t);
+    if (err->status) state_list_release(l);
+    return err->status;
+}
