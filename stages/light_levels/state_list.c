@@ -161,17 +161,19 @@ static enum status read_line(struct state_list *l, struct textfile *t, struct er
 
 static enum status add_usual(struct state_list *l, struct err *err)
 {
-    static const struct light_state usual[STATES_OF_EVERY_SCENE] = {
-        {.name = "photographed", .lamps = true, .sky = STATE_SKY_PHOTOGRAPHED},
-        {.name = "lamps", .lamps = true},
-        {.name = "daylight", .sky = STATE_SKY_PHOTOGRAPHED},
-        {.name = "overcast", .sky = STATE_SKY_OVERCAST, .horizontal = STATE_OVERCAST_LUX},
-    };
+    static const struct usual {
+        const char *name;
+        bool lamps;
+        enum state_sky sky;
+    } usual[STATES_OF_EVERY_SCENE] = {{"photographed", true, STATE_SKY_PHOTOGRAPHED},
+                                      {"lamps", true, STATE_SKY_NONE},
+                                      {"daylight", false, STATE_SKY_PHOTOGRAPHED},
+                                      {"overcast", false, STATE_SKY_OVERCAST}};
     for (int i = 0; !err->status && i < STATES_OF_EVERY_SCENE; i++) {
         if (begin_state(l, usual[i].name, err)) break;
-        char *name = l->items[i].name;
-        l->items[i] = usual[i];
-        l->items[i].name = name;
+        l->items[i].lamps = usual[i].lamps;
+        l->items[i].sky = usual[i].sky;
+        l->items[i].horizontal = STATE_OVERCAST_LUX;
     }
     return err->status;
 }
