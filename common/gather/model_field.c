@@ -245,8 +245,7 @@ bool model_field_pane(struct emitter *pane, const struct model_field *f, int bod
     span_face(&f->model.mesh, largest, &pane->centre, &pane->x, &pane->y);
     const struct vec3 off = vec3_scale(face->normal, PANE_REACH * model_rays_size(&f->model));
     const bool front = ray_scene_hit(&f->model.rays, vec3_add(pane->centre, off), face->normal, &hit);
-    const bool back =
-        ray_scene_hit(&f->model.rays, vec3_sub(pane->centre, off), vec3_scale(face->normal, -1), &hit);
+    const bool back = ray_scene_hit(&f->model.rays, vec3_sub(pane->centre, off), vec3_scale(face->normal, -1), &hit);
     pane->normal = vec3_scale(face->normal, front ? 1 : -1);
     return front != back;
 }

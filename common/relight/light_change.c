@@ -95,7 +95,8 @@ static enum status add_surfaces(struct light_change *c, struct err *err)
     all->triangles = malloc((count + 1) * sizeof *all->triangles);
     all->thing = calloc(count + 1, sizeof *all->thing);
     all->radiance = malloc((count + 1) * sizeof *all->radiance);
-    if (!all->triangles || !all->radiance || !all->thing) return err_nomem(err, "triangles", count * sizeof *all->triangles);
+    if (!all->triangles || !all->radiance || !all->thing)
+        return err_nomem(err, "triangles", count * sizeof *all->triangles);
     if (o->count) memcpy(all->triangles, o->triangles, (size_t)o->count * sizeof *all->triangles);
     if (o->count) memcpy(all->radiance, o->radiance, (size_t)o->count * sizeof *all->radiance);
     if (t->count) memcpy(all->triangles + o->count, t->triangles, (size_t)t->count * sizeof *all->triangles);
@@ -113,7 +114,8 @@ enum status light_change_read(struct light_change *c, const struct light_change_
     *c = (struct light_change){0};
     if (!model_axes_read(&c->axes, files->axes, prov, err) && !texture_map_read(&c->map, files->map, prov, err) &&
         !read_objects(c, files, prov, err) &&
-        !light_things_read(&c->things, files->things, &c->map, files->all_things, files->base, files->edited, prov, err) &&
+        !light_things_read(&c->things, files->things, &c->map, files->all_things, files->base, files->edited, prov,
+                           err) &&
         !add_surfaces(c, err) && !read_fields(c, files, prov, err) &&
         !face_areas_make(&c->old, &c->before.model.mesh, err))
         unite_emitters(c, err);

@@ -41,8 +41,7 @@ static enum status add_thing(struct light_things *t, uint32_t id, struct err *er
     const struct thing *thing = &t->placed.list.things[id - 1];
     const bool stays = t->placed.fate[id] != THING_IS_GONE;
     struct thing_mesh mesh = {0};
-    if (!thing_mesh_make(&mesh, &t->placed.volume, id, err) && !add_before(t, &mesh, thing, id, stays, err) &&
-        stays)
+    if (!thing_mesh_make(&mesh, &t->placed.volume, id, err) && !add_before(t, &mesh, thing, id, stays, err) && stays)
         add(&t->after, &mesh, NULL, thing, id, err);
     for (int k = 0; !err->status && k < t->placed.placed_count; k++)
         if (t->placed.placed[k].id == id) add(&t->after, &mesh, &t->placed.placed[k], thing, id, err);
@@ -84,7 +83,8 @@ enum status thing_surfaces_read(struct thing_surfaces *s, const char *folder, st
     for (int i = 1; !err->status && i <= all.list.count; i++) {
         struct thing_mesh mesh = {0};
         if (all.list.things[i - 1].support == THING_ON_CEILING) continue;
-        if (!thing_mesh_make(&mesh, &all.volume, (uint32_t)i, err)) add(s, &mesh, NULL, &all.list.things[i - 1], (uint32_t)i, err);
+        if (!thing_mesh_make(&mesh, &all.volume, (uint32_t)i, err))
+            add(s, &mesh, NULL, &all.list.things[i - 1], (uint32_t)i, err);
         thing_mesh_release(&mesh);
     }
     placed_things_release(&all);

@@ -45,10 +45,7 @@ static struct rgb reflectance_of(struct rgb radiance, struct rgb e)
     return rgb_make(divided(radiance.r, e.r), divided(radiance.g, e.g), divided(radiance.b, e.b));
 }
 
-static struct rgb bounded(struct rgb rho)
-{
-    return rgb_make(fmin(rho.r, MOST), fmin(rho.g, MOST), fmin(rho.b, MOST));
-}
+static struct rgb bounded(struct rgb rho) { return rgb_make(fmin(rho.r, MOST), fmin(rho.g, MOST), fmin(rho.b, MOST)); }
 
 static double left(double radiance, double rho, double e) { return fmax(0, radiance - rho * e / PI); }
 
@@ -162,8 +159,9 @@ static bool colour_at(struct patch_colour *at, const struct light_change *c, int
     *at = from->colour;
     if (now.is_new || vec3_length(vec3_sub(now.texel, place)) > SAME_PLACE) at->rest = rgb_grey(0);
     if (from->known)
-        at->reflectance = bounded(rgb_make(rho.r * quotient(now.colour.r, mean.r), rho.g * quotient(now.colour.g, mean.g),
-                                           rho.b * quotient(now.colour.b, mean.b)));
+        at->reflectance =
+            bounded(rgb_make(rho.r * quotient(now.colour.r, mean.r), rho.g * quotient(now.colour.g, mean.g),
+                             rho.b * quotient(now.colour.b, mean.b)));
     return true;
 }
 
@@ -201,8 +199,8 @@ void colours_of_edit(struct patch_colour *found, const struct light_patches *p, 
     for (int i = 0; i < p->face_patches; i++) found[i] = colour_of_patch(p, i, change, was, photographed);
     for (int i = p->face_patches; i < p->count; i++) {
         const int owner = p->list[i].owner;
-        found[i] = (struct patch_colour){.reflectance = owner < OWNER_THING
-                                                            ? change->objects.list.items[owner].brdf.albedo
-                                                            : thing_reflectance(was, photographed, owner)};
+        found[i] =
+            (struct patch_colour){.reflectance = owner < OWNER_THING ? change->objects.list.items[owner].brdf.albedo
+                                                                     : thing_reflectance(was, photographed, owner)};
     }
 }

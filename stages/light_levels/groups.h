@@ -22,9 +22,9 @@ struct light_groups {
     struct light_window *windows; /* the last one is ELSEWHERE, without a pane */
     int windows_count;            /* with it */
     struct sky_patches patches;
-    int lamps, rest, sky, sun;      /* first group of each kind; of `sky` and `sun` one a window */
-    int patch, beam;                /* first of these; patches.count of each window */
-    int count;                      /* groups */
+    int lamps, rest, sky, sun; /* first group of each kind; of `sky` and `sun` one a window */
+    int patch, beam;           /* first of these; patches.count of each window */
+    int count;                 /* groups */
 };
 
 #define WINDOW_ELSEWHERE "elsewhere"

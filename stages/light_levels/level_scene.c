@@ -69,8 +69,7 @@ static enum status trace_patches(struct light_rows *rows, const struct light_gro
 {
     struct row_place *places = malloc(((size_t)p->count + 1) * sizeof *places);
     if (!places) return err_nomem(err, "patches", (size_t)p->count * sizeof *places);
-    for (int i = 0; i < p->count; i++)
-        places[i] = (struct row_place){p->list[i].origins, p->list[i].origin_count};
+    for (int i = 0; i < p->count; i++) places[i] = (struct row_place){p->list[i].origins, p->list[i].origin_count};
     rows_trace(rows, g, p, places, p->count, params->rays, KEY_PATCHES, what, err);
     free(places);
     return err->status;
@@ -160,8 +159,10 @@ enum status level_light_at(float **found, struct light_rows *direct, const struc
     if (!places || !*found) err_nomem(err, "points", (size_t)count * columns * sizeof **found);
     for (int i = 0; !err->status && i < count; i++) places[i] = (struct row_place){&points[i], 1};
     if (!err->status)
-        rows_trace(direct, &l->groups, &l->patches, places, count, params->point_rays, KEY_POINTS, "light at points", err);
-    for (int i = 0; !err->status && i < count; i++) radiosity_gather(*found + columns * (size_t)i, direct, i, &l->radiosity);
+        rows_trace(direct, &l->groups, &l->patches, places, count, params->point_rays, KEY_POINTS, "light at points",
+                   err);
+    for (int i = 0; !err->status && i < count; i++)
+        radiosity_gather(*found + columns * (size_t)i, direct, i, &l->radiosity);
     free(places);
     return err->status;
 }

@@ -63,8 +63,7 @@ void state_weights_add_sky(struct state_weights *w, const struct sky_luminance *
     sky_patch_luminances(luminance, &groups->patches, sky);
     for (int v = 0; v < groups->windows_count; v++) {
         const double glass = v + 1 < groups->windows_count ? params->glass : 1;
-        for (int k = 0; k < groups->patches.count; k++)
-            w->absolute[groups_patch(groups, v, k)] += glass * luminance[k];
+        for (int k = 0; k < groups->patches.count; k++) w->absolute[groups_patch(groups, v, k)] += glass * luminance[k];
     }
     w->has_absolute = true;
     w->to_sun = sky->to_sun;
@@ -90,8 +89,9 @@ static enum status set_lamps(struct state_weights *w, const struct light_state *
     return ST_OK;
 }
 
-enum status state_weights_make(struct state_weights *w, const struct light_state *state, const struct state_list *states,
-                               const struct light_groups *groups, const struct levels_params *params, struct err *err)
+enum status state_weights_make(struct state_weights *w, const struct light_state *state,
+                               const struct state_list *states, const struct light_groups *groups,
+                               const struct levels_params *params, struct err *err)
 {
     struct sun_position sun;
     struct sky_luminance sky;

@@ -15,8 +15,9 @@ struct state_weights {
 };
 
 /* The caller releases w in each case. ST_DATA: a lamp that the scene does not have, with file and line. */
-enum status state_weights_make(struct state_weights *w, const struct light_state *state, const struct state_list *states,
-                               const struct light_groups *groups, const struct levels_params *params, struct err *err);
+enum status state_weights_make(struct state_weights *w, const struct light_state *state,
+                               const struct state_list *states, const struct light_groups *groups,
+                               const struct levels_params *params, struct err *err);
 /* The same of a sky and its sun alone. */
 void state_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
                            const struct levels_params *params);

@@ -123,9 +123,9 @@ static enum status print_points(struct levels_job *j, struct err *err)
         if (!points) err_nomem(err, "points", (size_t)list.count * sizeof *points);
     }
     for (int i = 0; !err->status && i < list.count; i++) {
-        points[i] = (struct gather_point){
-            model_from_world_point(&j->scene.axes, list.list[i].at),
-            vec3_normalize(model_from_world_direction(&j->scene.axes, list.list[i].normal))};
+        points[i] =
+            (struct gather_point){model_from_world_point(&j->scene.axes, list.list[i].at),
+                                  vec3_normalize(model_from_world_direction(&j->scene.axes, list.list[i].normal))};
         model_field_lift(level_scene_field(&j->scene), &points[i],
                          0.02 * model_rays_size(&level_scene_field(&j->scene)->model));
     }

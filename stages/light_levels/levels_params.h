@@ -5,15 +5,15 @@
 #include "common/base/param.h"
 
 /* name, type, default, min, max, unit, help */
-#define LEVELS_PARAMS(X)                                                                                            \
-    X(patches, int, 4000, 50, 100000, "", "number of patches that the surfaces are divided into, about")            \
-    X(rays, int, 512, 16, 65536, "", "rays of a patch to other patches; as many go to the windows")                 \
-    X(point_rays, int, 2048, 16, 1 << 20, "", "rays of a point to patches; as many go to the windows")              \
-    X(spacing, double, 0.5, 0.05, 10, "m", "distance of the points on a work plane or floor")                       \
-    X(margin, double, 0.5, 0, 10, "m", "distance of these points from the walls")                                   \
-    X(work_plane, double, 0.75, 0.05, 3, "m", "height of the work plane above the floor")                           \
-    X(glass, double, 0.8, 0.01, 1, "",                                                                              \
-      "part of the light that the panes let through, for skies other than the photographed one, which has it")      \
+#define LEVELS_PARAMS(X)                                                                                              \
+    X(patches, int, 4000, 50, 100000, "", "number of patches that the surfaces are divided into, about")              \
+    X(rays, int, 512, 16, 65536, "", "rays of a patch to other patches; as many go to the windows")                   \
+    X(point_rays, int, 2048, 16, 1 << 20, "", "rays of a point to patches; as many go to the windows")                \
+    X(spacing, double, 0.5, 0.05, 10, "m", "distance of the points on a work plane or floor")                         \
+    X(margin, double, 0.5, 0, 10, "m", "distance of these points from the walls")                                     \
+    X(work_plane, double, 0.75, 0.05, 3, "m", "height of the work plane above the floor")                             \
+    X(glass, double, 0.8, 0.01, 1, "",                                                                                \
+      "part of the light that the panes let through, for skies other than the photographed one, which has it")        \
     X(ground, double, 0.2, 0, 1, "", "reflectance of the ground outdoors, for skies other than the photographed one") \
     X(tolerance, double, 1e-4, 1e-8, 0.1, "", "part of a patch's light that the last round may change")
 

@@ -15,8 +15,8 @@
 
 #include "common/base/array.h"
 #include "common/base/parallel.h"
-#include "common/light/frame.h"
 #include "common/gather/strategy.h"
+#include "common/light/frame.h"
 #include "common/light/sobol.h"
 
 enum { SAMPLES = 4, GLANCES = 64, OUTER_PLACES = 8 };
@@ -94,10 +94,9 @@ static void set_frame(struct patch_cells *c, const struct solid_mesh *m, int fac
 static struct vec3 some_place(const struct solid_mesh *m, int face)
 {
     const int h = m->loops[m->faces[face].loop].half_edge;
-    const struct vec3 sum = vec3_add(
-        m->vertices[m->half_edges[h].origin].p,
-        vec3_add(m->vertices[m->half_edges[m->half_edges[h].next].origin].p,
-                 m->vertices[m->half_edges[m->half_edges[h].prev].origin].p));
+    const struct vec3 sum = vec3_add(m->vertices[m->half_edges[h].origin].p,
+                                     vec3_add(m->vertices[m->half_edges[m->half_edges[h].next].origin].p,
+                                              m->vertices[m->half_edges[m->half_edges[h].prev].origin].p));
     return vec3_scale(sum, 1.0 / 3);
 }
 
@@ -257,8 +256,7 @@ static void fill_cells(struct patch_cells *c)
 static enum status add_narrow(struct light_patches *p, int face, struct err *err)
 {
     const struct vec3 at = some_place(&p->field->model.mesh, face);
-    struct light_patch patch = {
-        .face = face, .owner = -1, .area = 1, .sample = p->sample_count, .sample_count = 1};
+    struct light_patch patch = {.face = face, .owner = -1, .area = 1, .sample = p->sample_count, .sample_count = 1};
     p->cells[face].patch[0] = p->count;
     if (add_sample(p, at, err)) return err->status;
     finish_patch(p, &patch);
@@ -339,9 +337,8 @@ static void set_origin(const struct light_patches *p, struct light_patch *patch,
 {
     const struct vec3 *t = p->field->surfaces->triangles.triangles[key->triangle];
     const struct vec3 n = vec3_normalize(triangle_cross(t));
-    patch->origins[patch->origin_count++] =
-        (struct gather_point){vec3_scale(vec3_add(t[0], vec3_add(t[1], t[2])), 1.0 / 3),
-                              key->side ? vec3_scale(n, -1) : n};
+    patch->origins[patch->origin_count++] = (struct gather_point){
+        vec3_scale(vec3_add(t[0], vec3_add(t[1], t[2])), 1.0 / 3), key->side ? vec3_scale(n, -1) : n};
 }
 
 /* Triangles keys[0 .. count - 1] are a patch; some of them, evenly by area, have its places. */
@@ -352,8 +349,7 @@ static enum status group_triangles(struct light_patches *p, const struct surface
     double sum = 0;
     for (int i = 0; i < count; i++) {
         const double area = 0.5 * vec3_length(triangle_cross(s->triangles.triangles[keys[i].triangle]));
-        patch.radiance =
-            rgb_add(patch.radiance, rgb_scale(s->radiance[keys[i].triangle][keys[i].side], area));
+        patch.radiance = rgb_add(patch.radiance, rgb_scale(s->radiance[keys[i].triangle][keys[i].side], area));
         patch.area += area;
         p->of_surface[keys[i].triangle][keys[i].side] = p->count;
     }

@@ -34,7 +34,7 @@ struct light_patches {
     struct patch_cells *cells; /* of each face */
     int (*of_surface)[2];      /* of each further triangle: of its front, its back; -1: none */
     struct light_patch *list;
-    struct vec3 *samples; /* places spread over the patches of faces, at which they have a texture */
+    struct vec3 *samples;                  /* places spread over the patches of faces, at which they have a texture */
     int count, sample_count, face_patches; /* the patches of faces come first */
     double side;                           /* of a cell, about */
 };

@@ -111,8 +111,7 @@ static void solve_block(struct solve *s, int k)
         return;
     }
     if (start_block(s, &b)) {
-        do
-            run_round(change, most, s, &b);
+        do run_round(change, most, s, &b);
         while (++s->rounds[k] < MOST_ROUNDS && !is_settled(change, most, s->tolerance));
         for (int i = 0; i < patches; i++)
             memcpy(s->radiance + 3 * ((size_t)s->rows->groups * (size_t)i + (size_t)b.first),
@@ -133,8 +132,12 @@ enum status radiosity_solve(struct radiosity *r, const struct light_rows *rows, 
     const size_t blocks = ((size_t)rows->groups + GROUPS - 1) / GROUPS,
                  values = 3 * (size_t)rows->groups * (size_t)rows->count;
     *r = (struct radiosity){calloc(values + 1, sizeof *r->radiance), 0};
-    struct solve s = {rows, colours,   r->radiance,
-                      rest, tolerance, calloc(blocks + 1, sizeof *s.rounds),
+    struct solve s = {rows,
+                      colours,
+                      r->radiance,
+                      rest,
+                      tolerance,
+                      calloc(blocks + 1, sizeof *s.rounds),
                       calloc(blocks + 1, sizeof *s.errors)};
     if (!r->radiance || !s.rounds || !s.errors) err_nomem(err, "radiance of patches", values * sizeof *r->radiance);
     if (!err->status) parallel_for(blocks, 1, solve_some, &s);

@@ -104,8 +104,7 @@ static void trace_cosine_packet(const struct source *s, const struct packet *p)
 {
     const struct light_groups *g = s->job->groups;
     struct ray_hit hits[RAY_PACKET];
-    const unsigned hit =
-        ray_scene_hit_packet(&g->field->model.rays, p->from, p->direction, (1u << p->count) - 1, hits);
+    const unsigned hit = ray_scene_hit_packet(&g->field->model.rays, p->from, p->direction, (1u << p->count) - 1, hits);
     for (int k = 0; k < p->count; k++) {
         const int patch = hit >> k & 1 ? patches_hit(s->job->patches, &hits[k]) : -1;
         if (patch >= 0)
@@ -206,8 +205,8 @@ static void trace_suns(const struct source *s)
             points.sample = (uint32_t)k;
             sobol_group(&points, 2, u);
             if (!strategy_sample(&way, u, &direction)) continue;
-            const double value = s->weight * vec3_dot(direction, s->point.normal) /
-                                 (strategy_density(&way, direction) * SUN_RAYS);
+            const double value =
+                s->weight * vec3_dot(direction, s->point.normal) / (strategy_density(&way, direction) * SUN_RAYS);
             if (ray_scene_blocked(&g->field->model.rays, s->from, direction, INFINITY)) continue;
             model_field_outdoors(&radiance, g->field, s->from, direction);
             if (is_sun(&g->field->sky, direction, radiance))
@@ -304,8 +303,7 @@ static void light_by_lamps(const struct source *s, int rays)
         const struct lamp *l = &f->lights.lamps[i];
         if (f->lamps[i].off) continue;
         const double share = lamp_share(s, l, i, rays);
-        if (share > 0)
-            add_direct(s, i, rgb_scale(lamp_irradiance(l, s->point.at, s->point.normal), share * s->weight));
+        if (share > 0) add_direct(s, i, rgb_scale(lamp_irradiance(l, s->point.at, s->point.normal), share * s->weight));
     }
 }
 

@@ -54,6 +54,5 @@ RULES(light_levels)
     say_room(g, f, "model");
     say_scripts(g, f);
     rule_option(g, "--out", FOLDER(g, LIGHT_SHEET));
-    for (int i = 0; *scene_setting("EDIT") && i < f->drawn_edits.count; i++)
-        edit_rule(g, f, f->drawn_edits.names[i]);
+    for (int i = 0; *scene_setting("EDIT") && i < f->drawn_edits.count; i++) edit_rule(g, f, f->drawn_edits.names[i]);
 }

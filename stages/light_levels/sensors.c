@@ -155,9 +155,10 @@ static enum status add_place(const struct spread *j, const struct place_list *l,
         add_point(j, m->at[0] + c * u - s * v, m->at[1] + s * u + c * v, z, err);
     }
     if (!err->status && j->s->count == before)
-        return err_set(err, ST_DATA,
-                       "%s:%d: place %s lies inside a wall or a thing at %g %g, %g m up; move it, or give it another height.",
-                       l->path, m->line, m->name, m->at[0], m->at[1], z);
+        return err_set(
+            err, ST_DATA,
+            "%s:%d: place %s lies inside a wall or a thing at %g %g, %g m up; move it, or give it another height.",
+            l->path, m->line, m->name, m->at[0], m->at[1], z);
     if (!err->status) end_area(j->s);
     return err->status;
 }

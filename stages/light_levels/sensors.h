@@ -14,8 +14,8 @@ struct sensor_area {
     enum sensor_kind kind;
     const char *name; /* of the room or place */
     int first, count;
-    int room;     /* of the plan; -1: of a place in none */
-    double step;  /* distance of neighbours, m */
+    int room;    /* of the plan; -1: of a place in none */
+    double step; /* distance of neighbours, m */
 };
 
 /* {0} is the empty state; everything is owned but the names. */

@@ -9,7 +9,7 @@
 #include "common/base/textfile.h"
 
 static const double BRIGHTEST = 1e6, MOST_FACTOR = 1000; /* lx */
-enum { YEAR = 2025 };                                     /* of times, which have none: no leap year */
+enum { YEAR = 2025 };                                    /* of times, which have none: no leap year */
 
 static void release_state(struct light_state *s)
 {
@@ -75,8 +75,8 @@ static enum status read_time(struct light_state *s, const struct state_list *l, 
 
 static enum status read_sky(struct light_state *s, const struct state_list *l, struct textfile *t, struct err *err)
 {
-    static const char *const covers[] = {[SKY_COVER_CLEAR] = "clear", [SKY_COVER_PARTLY] = "partly",
-                                         [SKY_COVER_OVERCAST] = "cloudy"};
+    static const char *const covers[] = {
+        [SKY_COVER_CLEAR] = "clear", [SKY_COVER_PARTLY] = "partly", [SKY_COVER_OVERCAST] = "cloudy"};
     char *word;
     if (textfile_word(t, "a sky", &word, err)) return err->status;
     s->sky = STATE_SKY_NONE;
