@@ -150,7 +150,7 @@ void level_points_sum(double to[2], const struct level_points *p, int point, con
         to[0] += w->relative[g] * (double)own[g];
         to[1] += w->absolute[g] * (double)own[g];
     }
-    if (w->sun > 0 && rows_sees_sun(field, p->points[point], w->to_sun))
+    if (field && w->sun > 0 && rows_sees_sun(field, p->points[point], w->to_sun))
         to[1] += w->sun * vec3_dot(p->points[point].normal, w->to_sun);
 }
 

@@ -36,7 +36,7 @@ enum status level_points_make(struct level_points *p, const struct level_light *
 void level_points_release(struct level_points *p);
 
 /* A point's illuminance in a state: to[0] in the unit of the photographs, to[1] in lx. The sun's direct light comes from
- * a ray in its own direction. */
+ * a ray in its own direction; field NULL: it is left out. */
 void level_points_sum(double to[2], const struct level_points *p, int point, const struct state_weights *w,
                       const struct model_field *field);
 

@@ -3,23 +3,27 @@
  * Overview. Surfaces are cut into patches (patches.c), light is divided into groups (groups.c), rays say what each patch
  * gets directly and from other patches (rows.c), the photographs say what it reflects (colours.c), and one solve passes
  * all groups on between patches (radiosity.c). Then rays from the points of rooms and places (sensors.c) give what each
- * group brings there. All that follows is sums (level_sums.c): states of lamps and sky, daylight factors. */
+ * group brings there. All that follows is sums (level_sums.c, level_sheet.c): states of lamps and sky, daylight
+ * factors, hours of a year. */
 #include "stages/light_levels/levels.h"
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "common/base/log.h"
-#include "common/base/outfile.h"
 #include "common/light/surface_points.h"
 #include "common/product/product.h"
+#include "stages/light_levels/level_file.h"
+#include "stages/light_levels/level_sheet.h"
+#include "stages/light_levels/quantities.h"
 
 void levels_release(struct levels_job *j)
 {
     sheet_release(&j->sheet);
     sheet_release(&j->before);
     level_points_release(&j->levels);
+    lux_scale_release(&j->scale);
+    weather_release(&j->weather);
     sensors_release(&j->sensors);
     level_light_release(&j->light);
     state_list_release(&j->states);
@@ -27,85 +31,6 @@ void levels_release(struct levels_job *j)
     model_plan_release(&j->plan);
     level_scene_release(&j->scene);
     provenance_release(&j->prov);
-}
-
-/* --------------------------------------------------------------------------------------------------------------- sheet */
-
-/* Which of the two sums counts, and its unit; NULL: the state cannot be summed. */
-static const char *unit_of(double factors[2], const struct levels_job *j, const struct state_weights *w)
-{
-    factors[0] = j->scale > 0 ? j->scale : 1;
-    factors[1] = 1;
-    if (j->scale > 0 || !w->has_relative) return "lx";
-    return w->has_absolute ? NULL : "relative";
-}
-
-static enum status add_faces(struct levels_job *j, const struct light_state *state, const struct state_weights *w,
-                             const double factors[2], const char *unit, struct err *err)
-{
-    const struct light_patches *p = &j->light.patches;
-    double(*sums)[2] = malloc(((size_t)p->count + 1) * sizeof *sums);
-    double *values = malloc(2 * ((size_t)p->count + 1) * sizeof *values), *areas = values ? values + p->count : NULL;
-    if (!sums || !values) err_nomem(err, "patches", (size_t)p->count * sizeof *sums);
-    if (!err->status) level_patches_sum(sums, &j->light, w, err);
-    for (int i = 0, next; !err->status && i < p->face_patches; i = next) {
-        for (next = i; next < p->face_patches && p->list[next].face == p->list[i].face; next++) {
-            values[next - i] = factors[0] * sums[next][0] + factors[1] * sums[next][1];
-            areas[next - i] = p->list[next].area;
-        }
-        sheet_add(&j->sheet, state->name, "face", solid_face_name(&p->field->model.mesh, p->list[i].face), unit, values,
-                  areas, next - i, err);
-    }
-    free(sums);
-    free(values);
-    return err->status;
-}
-
-static enum status add_areas(struct levels_job *j, const char *state, const char *unit, double *values, struct err *err)
-{
-    for (int i = 0; !err->status && i < j->sensors.area_count; i++) {
-        const struct sensor_area *a = &j->sensors.areas[i];
-        sheet_add(&j->sheet, state, sensor_kind_word(a->kind), a->name, unit, values + a->first, NULL, a->count, err);
-    }
-    return err->status;
-}
-
-static enum status add_state(struct levels_job *j, int number, struct err *err)
-{
-    const struct light_state *state = &j->states.items[number];
-    struct state_weights w = {0};
-    double factors[2], *values = malloc(((size_t)j->sensors.count + 1) * sizeof *values);
-    const char *unit = NULL;
-    if (!values) err_nomem(err, "points", (size_t)j->sensors.count * sizeof *values);
-    if (!err->status && !state_weights_make(&w, state, &j->states, &j->light.groups, &j->params, err))
-        unit = unit_of(factors, j, &w);
-    if (!err->status && !unit)
-        log_warn("the state %s has lamps and a sky that was not photographed: their sum needs the scale of the "
-                 "photographs' light; give it by lux.txt or lamps off.",
-                 state->name);
-    for (int i = 0; unit && i < j->sensors.count; i++) {
-        double sums[2];
-        level_points_sum(sums, &j->levels, i, &w, j->levels.points ? level_scene_field(&j->scene) : NULL);
-        values[i] = factors[0] * sums[0] + factors[1] * sums[1];
-    }
-    if (unit && !add_areas(j, state->name, unit, values, err)) add_faces(j, state, &w, factors, unit, err);
-    if (unit && !err->status && number == STATE_OVERCAST) {
-        for (int i = 0; i < j->sensors.count; i++) values[i] *= 100 / STATE_OVERCAST_LUX;
-        add_areas(j, "daylight-factor", "%", values, err);
-    }
-    state_weights_release(&w);
-    free(values);
-    return err->status;
-}
-
-static enum status make_sheet(struct levels_job *j, struct err *err)
-{
-    char path[FILE_PATH];
-    if (j->files.before && sheet_read(&j->before, j->files.before, &j->prov, err)) return err->status;
-    for (int i = 0; !err->status && i < j->states.count; i++) add_state(j, i, err);
-    if (err->status || product_path_in(path, j->out, PRODUCT_LIGHT_SHEET, &(struct product_key){0}, err))
-        return err->status;
-    return sheet_write(&j->sheet, j->files.before ? &j->before : NULL, path, &j->prov, err);
 }
 
 /* -------------------------------------------------------------------------------------------------------- given points */
@@ -151,6 +76,9 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
 {
     const struct levels_files *f = &j->files;
     if (f->places && place_list_read(&j->places, f->places, &j->prov, err)) return err->status;
+    if (f->before && sheet_read(&j->before, f->before, &j->prov, err)) return err->status;
+    if (f->scale && lux_scale_read(&j->scale, f->scale, &j->prov, err)) return err->status;
+    if (f->weather && weather_read(&j->weather, f->weather, &j->prov, err)) return err->status;
     if (state_list_read(&j->states, f->states, &j->prov, err) || model_plan_read(&j->plan, f->plan, &j->prov, err) ||
         level_scene_read(&j->scene, &f->light, &j->prov, err))
         return err->status;
@@ -160,12 +88,25 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
     return ST_OK;
 }
 
+/* Beside the sheet, which comes last: if it is new, so are the others. */
+static enum status write_others(struct levels_job *j, struct err *err)
+{
+    const struct product_key key = {0};
+    char path[FILE_PATH];
+    if (level_file_write(&j->levels, &j->sensors, &j->light.groups, j->out, &j->prov, err) ||
+        product_path_in(path, j->out, PRODUCT_QUANTITIES, &key, err) || quantities_write(&j->light, path, err) ||
+        product_path_in(path, j->out, PRODUCT_OPENING_SCHEDULE, &key, err))
+        return err->status;
+    return openings_write(&j->plan, path, err);
+}
+
 enum status levels_run(struct levels_job *j, struct err *err)
 {
     if (read_inputs(j, err) || level_light_make(&j->light, &j->scene, &j->params, err)) return err->status;
     if (j->files.points) return print_points(j, err);
     if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, err) ||
-        level_points_make(&j->levels, &j->light, j->sensors.points, j->sensors.count, &j->params, err))
+        level_points_make(&j->levels, &j->light, j->sensors.points, j->sensors.count, &j->params, err) ||
+        write_others(j, err))
         return err->status;
-    return make_sheet(j, err);
+    return level_sheet_make(j, err);
 }

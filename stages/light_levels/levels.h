@@ -2,12 +2,15 @@
 #ifndef REMODEL_LEVELS_H
 #define REMODEL_LEVELS_H
 
+#include "common/daylight/lux_scale.h"
+#include "common/daylight/weather.h"
+#include "stages/light_levels/level_sums.h"
 #include "stages/light_levels/sensors.h"
 #include "stages/light_levels/sheet.h"
 
 struct levels_files {
     struct light_change_files light;
-    const char *plan, *places, *states, *points, *before, *scale;
+    const char *plan, *places, *states, *weather, *points, *before, *scale;
 };
 
 /* Everything but the paths is owned. */
@@ -24,7 +27,8 @@ struct levels_job {
     struct sensors sensors;
     struct level_points levels; /* of the sensors */
     struct light_sheet sheet, before;
-    double scale; /* cd/m2 of a radiance of 1; 0: unknown */
+    struct lux_scale scale;
+    struct weather weather;
 };
 
 /* Reads what the files name, computes, and writes the products below `out`. */

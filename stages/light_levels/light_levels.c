@@ -5,9 +5,13 @@
  *         OUTDOORS, LIGHTS, REFERENCES/ID.exr what lies outside; lamps and openings
  *         THINGS/things.txt, volume.exr       furniture
  *         EDITED, MAP, OBJECTS, SCENE/FILE.obj of an edit: its model, textures and objects
- *         PLACES, STATES                      named places; states of lamps and sky
+ *         PLACES, STATES, WEATHER             named places; states of lamps and sky; an EPW file
+ *         SCALE                               how many cd/m2 a radiance of 1 is
  *         BEFORE                              the sheet of the unedited room
- * writes  OUT/sheet.tsv                       illuminance of rooms, faces and places in each state */
+ * writes  OUT/levels.txt, levels.exr          illuminance at each point from each group of light
+ *         OUT/quantities.csv, openings.csv    areas of faces; openings with their sizes
+ *         OUT/STATE.svg                       illuminance of the work planes on the floor plan
+ *         OUT/sheet.tsv                       illuminance of rooms, faces and places in each state */
 #include "common/base/cli.h"
 #include "stages/light_levels/levels.h"
 
@@ -37,6 +41,9 @@ int main(int argc, char **argv)
         CLI_STR("scene", &light->scene, CLI_OPTIONAL, "folder of the objects' meshes"),
         CLI_STR("places", &job.files.places, CLI_OPTIONAL, "named places, places.txt"),
         CLI_STR("states", &job.files.states, CLI_OPTIONAL, "states of lamps and sky, states.txt"),
+        CLI_STR("weather", &job.files.weather, CLI_OPTIONAL, "weather of a year, an EPW file, for annual figures"),
+        CLI_STR("scale", &job.files.scale, CLI_OPTIONAL,
+                "cd/m2 of a radiance of 1, scale.txt; without it, light of the photographs is in their own unit"),
         CLI_STR("before", &job.files.before, CLI_OPTIONAL, "sheet.tsv of the unedited room, to compare with"),
         CLI_STR("points", &job.files.points, CLI_OPTIONAL,
                 "instead: print the photographed irradiance at points, X Y Z NX NY NZ a line, in the views' frame"),

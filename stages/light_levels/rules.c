@@ -18,12 +18,17 @@ static void say_room(struct graph *g, const struct scene_facts *f, const char *m
 static void say_scripts(struct graph *g, const struct scene_facts *f)
 {
     static const char *const names[] = {"places", "states"};
+    const char *scale = PATH(g, LUX_SCALE);
     (void)f;
     for (int i = 0; i < 2; i++) {
         const char *path = graph_scene_file(g, graph_text(g, "%s.txt", names[i]));
         if (path) rule_takes(g, graph_text(g, "--%s", names[i]), path);
         rule_needs(g, graph_stamp(g, graph_text(g, "%s.txt", names[i]), path ? path : "none"));
     }
+    if (path_is_file(scale)) rule_takes(g, "--scale", scale);
+    rule_needs(g, graph_stamp(g, "lux_scale.txt", path_is_file(scale) ? scale : "none"));
+    rule_needs(g, graph_stamp(g, "weather.txt", scene_setting("WEATHER")));
+    if (*scene_setting("WEATHER")) rule_variable(g, "--weather", "WEATHER");
 }
 
 static void edit_rule(struct graph *g, const struct scene_facts *f, const char *edit)

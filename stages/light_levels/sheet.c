@@ -35,26 +35,28 @@ static enum status add_row(struct light_sheet *s, const char *state, const char 
 {
     if (array_append(&s->rows, (size_t)s->count, sizeof *s->rows, "rows", err)) return err->status;
     struct sheet_row *r = &s->rows[s->count];
-    *r = (struct sheet_row){strdup(state), strdup(kind), strdup(place), strdup(unit), 0, 0, 0, 0};
+    *r = (struct sheet_row){strdup(state), strdup(kind), strdup(place), strdup(unit), 0, 0, 0, 0, 0, 0};
     s->count++;
     return r->state && r->kind && r->place && r->unit ? ST_OK : err_nomem(err, "names", strlen(place));
 }
 
 enum status sheet_add(struct light_sheet *s, const char *state, const char *kind, const char *place, const char *unit,
-                      const double *values, const double *weights, int count, struct err *err)
+                      const struct sheet_values *of, struct err *err)
 {
     double sum = 0, weight = 0, least = INFINITY, most = 0;
-    for (int i = 0; i < count; i++) {
-        const double w = weights ? weights[i] : 1;
-        sum += w * values[i];
+    for (int i = 0; i < of->count; i++) {
+        const double w = of->weights ? of->weights[i] : 1;
+        sum += w * of->values[i];
         weight += w;
-        least = fmin(least, values[i]);
-        most = fmax(most, values[i]);
+        least = fmin(least, of->values[i]);
+        most = fmax(most, of->values[i]);
     }
     if (!(weight > 0) || add_row(s, state, kind, place, unit, err)) return err->status;
     struct sheet_row *r = &s->rows[s->count - 1];
-    r->points = count;
+    r->points = of->count;
     r->mean = sum / weight;
+    r->low = (of->high > 0 ? of->low : 1) * r->mean;
+    r->high = (of->high > 0 ? of->high : 1) * r->mean;
     r->least = least;
     r->most = most;
     return ST_OK;
@@ -79,8 +81,8 @@ static const struct sheet_row *find_row(const struct light_sheet *s, const struc
 
 static void put_row(FILE *to, const struct sheet_row *r, const struct light_sheet *before)
 {
-    fprintf(to, "%s\t%s\t%s\t%d\t%.4g\t%.4g\t%.4g\t%.3g\t%s", r->state, r->kind, r->place, r->points, r->mean, r->least,
-            r->most, r->mean > 0 ? r->least / r->mean : 0, r->unit);
+    fprintf(to, "%s\t%s\t%s\t%d\t%.4g\t%.4g\t%.4g\t%.4g\t%.4g\t%.3g\t%s", r->state, r->kind, r->place, r->points,
+            r->mean, r->low, r->high, r->least, r->most, r->mean > 0 ? r->least / r->mean : 0, r->unit);
     if (before) {
         const struct sheet_row *was = find_row(before, r);
         if (was)
@@ -117,6 +119,8 @@ static enum status read_row(struct light_sheet *s, struct textfile *t, struct er
     struct sheet_row *r = &s->rows[s->count - 1];
     if (textfile_int(t, "a number of points", 1, 1 << 30, &points, err) ||
         textfile_number(t, "a mean", 0, INFINITY, &r->mean, err) ||
+        textfile_number(t, "the low end of the interval", 0, INFINITY, &r->low, err) ||
+        textfile_number(t, "the high end of the interval", 0, INFINITY, &r->high, err) ||
         textfile_number(t, "the least", 0, INFINITY, &r->least, err) ||
         textfile_number(t, "the most", 0, INFINITY, &r->most, err) ||
         textfile_number(t, "a uniformity", 0, INFINITY, &uniformity, err) || textfile_word(t, "a unit", &word[0], err))

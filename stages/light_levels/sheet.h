@@ -9,7 +9,15 @@
 struct sheet_row {
     char *state, *kind, *place, *unit; /* owned */
     int points;
-    double mean, least, most;
+    double mean, low, high; /* low, high: the 95 % interval of the mean */
+    double least, most;
+};
+
+/* Values of an area's points, and what they stand for; weights NULL: all the same. */
+struct sheet_values {
+    const double *values, *weights;
+    int count;
+    double low, high; /* the ends of the interval, as factors of the mean; high 0: there is none */
 };
 
 /* {0} is the empty state; everything is owned. */
@@ -20,7 +28,7 @@ struct light_sheet {
 
 /* Copies the texts. ST_NOMEM. */
 enum status sheet_add(struct light_sheet *s, const char *state, const char *kind, const char *place, const char *unit,
-                      const double *values, const double *weights, int count, struct err *err);
+                      const struct sheet_values *of, struct err *err);
 void sheet_release(struct light_sheet *s);
 
 /* Reads a sheet.tsv that was written before. ST_DATA with file and line. */

@@ -1,0 +1,199 @@
+/* level_plan.c - see level_plan.h.
+ *
+ * Each point of a work plane is a square of its spacing, coloured by the logarithm of its value between the least and the
+ * most of all rooms (at most a factor of 1000 apart). Isolines are at 1, 2, 3 and 5 times powers of ten: in each square of
+ * four points a level cuts the sides where it lies between their values, at the place of linear interpolation
+ * [Lorensen 1987]. Every line has its level once a room. */
+#include "stages/light_levels/level_plan.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/base/outfile.h"
+#include "common/image/false_colour.h"
+#include "common/model/plan_sheet.h"
+
+enum { LEVELS_MOST = 32 };
+static const double SPAN = 1000;
+
+struct drawing {
+    const struct level_picture *picture;
+    const struct sensors *sensors;
+    struct plan_sheet sheet;
+    double low, high;
+    double levels[LEVELS_MOST];
+    int level_count;
+};
+
+static void find_levels(struct drawing *d)
+{
+    static const double steps[] = {1, 2, 3, 5};
+    d->low = INFINITY;
+    d->high = 0;
+    for (int a = 0; a < d->sensors->area_count; a++)
+        for (int i = 0; d->sensors->areas[a].kind == SENSOR_WORK_PLANE && i < d->sensors->areas[a].count; i++) {
+            const double v = d->picture->values[d->sensors->areas[a].first + i];
+            d->low = fmin(d->low, v);
+            d->high = fmax(d->high, v);
+        }
+    d->low = fmax(d->low, d->high / SPAN);
+    if (!(d->high > 0)) return;
+    for (int e = (int)floor(log10(d->low)); e <= (int)ceil(log10(d->high)); e++)
+        for (int k = 0; k < 4; k++) {
+            const double level = steps[k] * pow(10, e);
+            if (level > d->low && level < d->high && d->level_count < LEVELS_MOST) d->levels[d->level_count++] = level;
+        }
+}
+
+static double ramp_place(const struct drawing *d, double v)
+{
+    return d->high > d->low && v > 0 ? log(fmax(v, d->low) / d->low) / log(d->high / d->low) : 0;
+}
+
+static void put_square(const struct drawing *d, double x, double y, double side, double value)
+{
+    unsigned char c[3];
+    colour_of_ramp(ramp_place(d, value), c);
+    fprintf(d->sheet.to, "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"#%02x%02x%02x\"/>\n",
+            plan_sheet_x(&d->sheet, x - side / 2), plan_sheet_y(&d->sheet, y + side / 2), d->sheet.scale * side,
+            d->sheet.scale * side, c[0], c[1], c[2]);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ isolines */
+
+/* The points of an area by column and row; -1: none. */
+struct lattice {
+    double x, y, step;
+    int width, height, *point; /* owned */
+};
+
+static enum status make_lattice(struct lattice *l, const struct sensors *s, const struct sensor_area *a,
+                                struct err *err)
+{
+    double high[2] = {-INFINITY, -INFINITY};
+    *l = (struct lattice){INFINITY, INFINITY, a->step, 0, 0, NULL};
+    for (int i = a->first; i < a->first + a->count; i++) {
+        l->x = fmin(l->x, s->points[i].at.x);
+        l->y = fmin(l->y, s->points[i].at.y);
+        high[0] = fmax(high[0], s->points[i].at.x);
+        high[1] = fmax(high[1], s->points[i].at.y);
+    }
+    l->width = (int)lround((high[0] - l->x) / a->step) + 1;
+    l->height = (int)lround((high[1] - l->y) / a->step) + 1;
+    const size_t count = (size_t)l->width * (size_t)l->height;
+    l->point = malloc(count * sizeof *l->point);
+    if (!l->point) return err_nomem(err, "points of a room", count * sizeof *l->point);
+    for (size_t i = 0; i < count; i++) l->point[i] = -1;
+    for (int i = a->first; i < a->first + a->count; i++) {
+        const int x = (int)lround((s->points[i].at.x - l->x) / a->step);
+        const int y = (int)lround((s->points[i].at.y - l->y) / a->step);
+        l->point[y * l->width + x] = i;
+    }
+    return ST_OK;
+}
+
+/* Where a level cuts the sides of a square: pairs of places. Corners are in order around it. */
+static int cut_square(double cuts[4][2], const double corner[4][2], const double value[4], double level)
+{
+    int count = 0;
+    for (int k = 0; k < 4; k++) {
+        const int n = (k + 1) % 4;
+        if ((value[k] < level) == (value[n] < level)) continue;
+        const double t = (level - value[k]) / (value[n] - value[k]);
+        for (int c = 0; c < 2; c++) cuts[count][c] = corner[k][c] + t * (corner[n][c] - corner[k][c]);
+        count++;
+    }
+    return count;
+}
+
+static void put_level(const struct drawing *d, const struct lattice *l, double level)
+{
+    static const int around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    bool named = false;
+    for (int i = 0; i + 1 < l->height; i++)
+        for (int j = 0; j + 1 < l->width; j++) {
+            double corner[4][2], value[4], cuts[4][2];
+            bool whole = true;
+            for (int k = 0; k < 4; k++) {
+                const int x = j + around[k][0], y = i + around[k][1], point = l->point[y * l->width + x];
+                whole &= point >= 0;
+                corner[k][0] = l->x + x * l->step;
+                corner[k][1] = l->y + y * l->step;
+                value[k] = point >= 0 ? d->picture->values[point] : 0;
+            }
+            const int count = whole ? cut_square(cuts, (const double(*)[2])corner, value, level) : 0;
+            for (int k = 0; k + 1 < count; k += 2)
+                fprintf(d->sheet.to, "<path class=\"level\" d=\"M%.2f %.2fL%.2f %.2f\"/>\n",
+                        plan_sheet_x(&d->sheet, cuts[k][0]), plan_sheet_y(&d->sheet, cuts[k][1]),
+                        plan_sheet_x(&d->sheet, cuts[k + 1][0]), plan_sheet_y(&d->sheet, cuts[k + 1][1]));
+            if (count && !named) {
+                char text[32];
+                snprintf(text, sizeof text, "%g", level);
+                plan_sheet_put_text(&d->sheet, (cuts[0][0] + cuts[1][0]) / 2, (cuts[0][1] + cuts[1][1]) / 2, "number",
+                                    text);
+                named = true;
+            }
+        }
+}
+
+static enum status put_area(const struct drawing *d, const struct sensor_area *a, struct err *err)
+{
+    struct lattice l;
+    if (make_lattice(&l, d->sensors, a, err)) return err->status;
+    for (int i = a->first; i < a->first + a->count; i++)
+        put_square(d, d->sensors->points[i].at.x, d->sensors->points[i].at.y, a->step, d->picture->values[i]);
+    for (int k = 0; k < d->level_count; k++) put_level(d, &l, d->levels[k]);
+    free(l.point);
+    return ST_OK;
+}
+
+/* The means of named places, written where they are. */
+static void put_places(const struct drawing *d)
+{
+    for (int k = 0; k < d->sensors->area_count; k++) {
+        const struct sensor_area *a = &d->sensors->areas[k];
+        double x = 0, y = 0, mean = 0;
+        char text[128];
+        if (a->kind != SENSOR_PLACE) continue;
+        for (int i = a->first; i < a->first + a->count; i++) {
+            x += d->sensors->points[i].at.x / a->count;
+            y += d->sensors->points[i].at.y / a->count;
+            mean += d->picture->values[i] / a->count;
+        }
+        snprintf(text, sizeof text, "%s %.3g", a->name, mean);
+        plan_sheet_put_text(&d->sheet, x, y, "place", text);
+    }
+}
+
+static void put_title(const struct drawing *d)
+{
+    char text[256];
+    snprintf(text, sizeof text, "%s: %.3g to %.3g %s on the work planes", d->picture->title, d->low, d->high,
+             d->picture->unit);
+    plan_sheet_put_text(&d->sheet, (d->sheet.low[0] + d->sheet.high[0]) / 2, d->sheet.high[1] - 24 / d->sheet.scale,
+                        "name", text);
+}
+
+enum status level_plan_write(const struct level_picture *picture, const struct sensors *sensors,
+                             const struct model_plan *plan, const char *path, struct err *err)
+{
+    struct drawing d = {.picture = picture, .sensors = sensors};
+    struct outfile f = {0};
+    if (outfile_open(&f, path, err)) return err->status;
+    find_levels(&d);
+    plan_sheet_fit(&d.sheet, plan);
+    plan_sheet_begin(&d.sheet, f.fp, "Light levels",
+                     ".level{fill:none;stroke:#fff;stroke-width:1.6}"
+                     ".number,.place{paint-order:stroke;stroke:#fff;stroke-width:3px;font-size:13px}"
+                     ".place{font-weight:600}");
+    plan_sheet_put_plan(&d.sheet, plan);
+    for (int k = 0; !err->status && k < sensors->area_count; k++)
+        if (sensors->areas[k].kind == SENSOR_WORK_PLANE) put_area(&d, &sensors->areas[k], err);
+    put_places(&d);
+    put_title(&d);
+    plan_sheet_end(&d.sheet);
+    if (!err->status) outfile_commit(&f, err);
+    outfile_discard(&f);
+    return err->status;
+}

@@ -1,0 +1,16 @@
+/* level_plan.h - illuminance of the work planes on the floor plan, in false colours with isolines. */
+#ifndef REMODEL_LEVELS_PLAN_H
+#define REMODEL_LEVELS_PLAN_H
+
+#include "stages/light_levels/sensors.h"
+
+/* What a picture shows: a value of each point, and its unit. */
+struct level_picture {
+    const char *title, *unit;
+    const double *values;
+};
+
+enum status level_plan_write(const struct level_picture *picture, const struct sensors *sensors,
+                             const struct model_plan *plan, const char *path, struct err *err);
+
+#endif
