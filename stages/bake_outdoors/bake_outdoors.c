@@ -163,8 +163,9 @@ static enum status write_sky(const struct job *j, const struct sky_fit *sky, con
                 s->light.irradiance.b, s->light.places ? s->light.error : 0, s->light.places, s->light.lamps);
     fputc('\n', f.fp);
     if (looked)
-        fprintf(f.fp, "patches gain %.4g next %.4g contrast %.4g agree %.4g border %d\n", s->search.fit.gain,
-                s->search.next, s->search.evidence.contrast, s->search.evidence.agree, s->search.evidence.border);
+        fprintf(f.fp, "patches gain %.4g next %.4g contrast %.4g agree %.4g border %d sure %.4g\n", s->search.fit.gain,
+                s->search.next, s->search.evidence.contrast, s->search.evidence.agree, s->search.evidence.border,
+                s->search.evidence.sure);
     outfile_commit(&f, err);
     outfile_discard(&f);
     return err->status;

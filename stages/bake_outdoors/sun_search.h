@@ -10,6 +10,7 @@ struct sun_evidence {
     double contrast; /* mean natural logarithm of lit to unlit, across the edges of the patches */
     double agree;    /* share of the edges that are brighter on the side that should be lit */
     int border;      /* pairs of squares across the edges */
+    double sure;     /* how far `agree` is beyond one half, in standard deviations of independent pairs */
 };
 
 /* {0} is the empty state. */
@@ -17,7 +18,7 @@ struct sun_search {
     bool found;
     struct sun_fit fit;           /* of the best direction, found or not */
     struct sun_evidence evidence; /* its own */
-    double next;                  /* the gain of the next best direction, far from it */
+    double next;                  /* what the next best direction, far from it, explains beside it; a gain */
     struct atlas_squares edges;   /* squares close to the edges of its patches; owned */
 };
 
