@@ -20,9 +20,9 @@
  * What chance can do is seen from directions whose patches are darker than what is around them: light never does that.
  *   A wrong direction may throw a patch through another window onto an edge of the right patch, and then explains a
  * part of it. So the other peaks count by what they explain of what the best one leaves.
- *   What tells the sun from chance is not how large the contrast is, which a pattern of boards hides, but that many more
- * edges are brighter on the right side than half of them: a sign test. Neighbouring pairs share their texture, so that
- * its standard deviations are not to be taken literally: chance reaches 16 of them, patches of sun 26 and more.
+ *   Boards with a pattern hide how large the contrast is. What tells the sun from chance is a sign test: many more than
+ * half of the edges are brighter on the side that should be lit. Neighbouring pairs share their texture, so that its
+ * standard deviations are not to be taken literally: chance reaches 16 of them, patches of sun 26 and more.
  *
  * Source: none for this form. That shadows and patches give the direction of the sun is common knowledge; the search
  * over directions with the model's own openings follows [Colburn 2014, 5.3.2] in treating a window as the light. */
