@@ -1,6 +1,8 @@
 /* page_parts.c - see page_parts.h: the markup that sections share. */
 #include "stages/report/page_parts.h"
 
+#include "common/capture/panorama_name.h"
+
 #include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
@@ -202,4 +204,18 @@ void page_put_view_metric(FILE *to, const struct contents *c, const char *view, 
     fprintf(to, ", %.4g ", m->value);
     if (has_unit) html_printf(to, "%s ", m->unit);
     fputs(label, to);
+}
+
+void page_put_photo_name(FILE *to, const char *photo)
+{
+    int yaw;
+    const size_t length = panorama_name_read(&yaw, photo);
+    char name[256];
+    snprintf(name, sizeof name, "%.*s", (int)(length ? length : strlen(photo)), photo);
+    fputs(length ? "Panorama " : "Photograph ", to);
+    html_text(to, name);
+    if (length && yaw <= 180)
+        fprintf(to, yaw ? ", %d degrees to the right" : ", straight ahead", yaw);
+    else if (length)
+        fprintf(to, ", %d degrees to the left", 360 - yaw);
 }

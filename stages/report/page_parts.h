@@ -57,6 +57,9 @@ enum status page_put_head(struct page *page, const char *title, const char *more
 /* A file of page->parts between <TAG> and </TAG>. ST_IO. */
 enum status page_put_part(struct page *page, const char *tag, const char *file, struct err *err);
 
+/* "Photograph NAME", or of a face of a panorama "Panorama NAME, 60 degrees to the right". */
+void page_put_photo_name(FILE *to, const char *photo);
+
 /* Numbers with their units. */
 void page_put_seconds(FILE *to, double seconds);
 void page_put_mib(FILE *to, double mib);

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/capture/panorama_name.h"
 #include "common/texture/picture_made.h"
 #include "stages/report/page_relit.h"
 
@@ -103,24 +104,23 @@ static enum status put_room(struct page *page, const struct rooms *rooms, const 
     if (!page_write_picture(page, &p->before, QUALITY, before, err) &&
         !put_looks(page, rooms, p, before, &list, first, err)) {
         snprintf(size, sizeof size, "loading=\"lazy\" width=\"%d\" height=\"%d\"", p->before.width, p->before.height);
-        fputs("<figure class=\"room\" data-photo=\"Photograph ", to);
-        html_text(to, p->photo);
-        fprintf(to, "\">\n<div class=\"ba\"><img class=\"after\" %s src=\"%s%s\" alt=\"Photograph ", size,
-                page->address, first);
-        html_text(to, p->photo);
+        fputs("<figure class=\"room\" data-photo=\"", to);
+        page_put_photo_name(to, p->photo);
+        fprintf(to, "\">\n<div class=\"ba\"><img class=\"after\" %s src=\"%s%s\" alt=\"", size, page->address, first);
+        page_put_photo_name(to, p->photo);
         fputs(" after the change: ", to);
         page_put_change(to, change);
-        fprintf(to, "\"><img class=\"before\" %s src=\"%s%s\" alt=\"Photograph ", size, page->address, before);
-        html_text(to, p->photo);
+        fprintf(to, "\"><img class=\"before\" %s src=\"%s%s\" alt=\"", size, page->address, before);
+        page_put_photo_name(to, p->photo);
         fputs(" before the change\"><i class=\"line\"></i><b class=\"left\">before</b><b class=\"right\">", to);
         page_put_change(to, change);
         fprintf(to,
                 "%s</b><input type=\"range\" min=\"0\" max=\"100\" value=\"50\" step=\"1\" aria-label=\"Line between "
-                "before and after, photograph ",
+                "before and after: ",
                 look->relit.rgb ? ", new light" : "");
-        html_text(to, p->photo);
-        fputs("\"></div>\n<figcaption>Photograph <b>", to);
-        html_text(to, p->photo);
+        page_put_photo_name(to, p->photo);
+        fputs("\"></div>\n<figcaption><b>", to);
+        page_put_photo_name(to, p->photo);
         fprintf(to, "</b>. <span class=\"says\"></span></figcaption>\n<ul class=\"looks\">\n%s</ul>\n</figure>\n",
                 list);
     }
@@ -147,13 +147,33 @@ static void put_about(FILE *to, const struct rooms *rooms)
     if (any) fputs("</dl>\n", to);
 }
 
+/* Begins a place: the faces of a panorama. */
+static void put_place(FILE *to, const char *photo)
+{
+    int yaw;
+    char name[256];
+    snprintf(name, sizeof name, "%.*s", (int)panorama_name_read(&yaw, photo), photo);
+    fputs("<section class=\"place\" aria-label=\"Panorama ", to);
+    html_text(to, name);
+    fputs("\">\n<h3>Panorama ", to);
+    html_text(to, name);
+    fputs("</h3>\n", to);
+}
+
 enum status page_rooms(struct page *page, const struct rooms *rooms, struct err *err)
 {
     if (!rooms->photo_count) return ST_OK;
     put_about(page->to, rooms);
     fputs("<div class=\"rooms\">\n", page->to);
-    for (int i = 0; i < rooms->photo_count; i++)
-        if (put_room(page, rooms, &rooms->photos[i], err)) return err->status;
+    for (int i = 0; i < rooms->photo_count; i++) {
+        /* faces of one panorama stand together: rooms_choice.c */
+        const struct room_photo *p = &rooms->photos[i];
+        const bool follows = i && panorama_name_same(p[-1].photo, p->photo);
+        const bool goes_on = i + 1 < rooms->photo_count && panorama_name_same(p->photo, p[1].photo);
+        if (goes_on && !follows) put_place(page->to, p->photo);
+        if (put_room(page, rooms, p, err)) return err->status;
+        if (follows && !goes_on) fputs("</section>\n", page->to);
+    }
     fputs("</div>\n", page->to);
     if (rooms->photos_changed > rooms->photo_count) {
         fputs("<p class=\"muted\">", page->to);

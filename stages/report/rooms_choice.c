@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "common/base/sort.h"
+#include "common/capture/panorama_name.h"
 #include "common/math/numbers.h"
 #include "stages/report/rooms_parts.h"
 
@@ -170,6 +171,21 @@ static int compare_photos(const void *a, const void *b)
     return strcmp(p->photo, q->photo);
 }
 
+/* Faces of one panorama were taken from one place: they follow the one that tells most. */
+static void gather_places(struct rooms *rooms)
+{
+    for (int i = 0; i + 1 < rooms->photo_count; i++) {
+        int to = i + 1;
+        for (int k = to; k < rooms->photo_count; k++) {
+            if (!panorama_name_same(rooms->photos[i].photo, rooms->photos[k].photo)) continue;
+            const struct room_photo face = rooms->photos[k];
+            memmove(&rooms->photos[to + 1], &rooms->photos[to], (size_t)(k - to) * sizeof face);
+            rooms->photos[to++] = face;
+        }
+        i = to - 1;
+    }
+}
+
 enum status rooms_choose(struct rooms_reading *r, struct err *err)
 {
     struct rooms *rooms = r->rooms;
@@ -181,5 +197,6 @@ enum status rooms_choose(struct rooms_reading *r, struct err *err)
     for (int i = 0; !err->status && i < r->photo_count; i++)
         if (r->photos[i].chosen) add_room(r, &r->photos[i], err);
     if (!err->status && chosen) qsort(rooms->photos, (size_t)chosen, sizeof *rooms->photos, compare_photos);
+    gather_places(rooms);
     return err->status;
 }

@@ -47,8 +47,8 @@ runTests({
 
     /* 2 units are 5 m: the page counts in metres at once, scripts follow, and undo restores their bytes. */
     async a_length_makes_the_page_count_in_metres(hand) {
-        const edit = 'remodel-script 1\nmove west by 0.4 # more\nbox chest from 1 1 to 2 1.5 top 0.8 turn 30\ncolour box/chest 0.1 0.2 0.3\n';
-        const text = WALLS.replace('set ceiling 2.5', 'set  ceiling 2.5 # 2.5 high') + 'room main south west north east\n';
+        const edit = 'remodel-script 1\n# by 0.4\nmove west by 0.4\nbox chest from 1 1 to 2 1.5 top 0.8 turn 30\ncolour box/chest 0.1 0.2 0.3\n';
+        const text = WALLS.replace('set ceiling 2.5', '# 2.5 high\nset  ceiling 2.5') + 'room main south west north east\n';
         await hand.begin(text, {'edits/e.txt': edit});
         await hand.page.run("app.openFile('scale.txt')");
         await hand.clicks('mark', 'p0', [at('p0', [1, 0.5, 0]), at('p0', [3, 0.5, 0])]);
@@ -60,8 +60,8 @@ runTests({
         check(/in metres now: 1 unit was 2\.(49|50)\d+ m\. Lengths in edits\/e\.txt, model\.txt were multiplied by 2\.(49|50)/.test(notes), notes);
         const unit = await hand.page.run('app.unit'), n = (v) => String(+(unit * v).toFixed(5));
         check(Math.abs(unit - 2.5) < 0.01 && Math.abs(east(await hand.model()) + 4 * unit) < 1e-4, `a unit is ${unit}, east is at ${east(await hand.model())}`);
-        check((await hand.text()).includes(`set  ceiling ${n(2.5)} # 2.5 high\nset thickness ${n(0.1)}\nwall south from ${n(4)} 0 to 0 0\n`), await hand.text());
-        check(await hand.text('edits/e.txt') === `remodel-script 1\nmove west by ${n(0.4)} # more\nbox chest from ${n(1)} ${n(1)} to ${n(2)} ${n(1.5)} top ${n(0.8)} turn 30\ncolour box/chest 0.1 0.2 0.3\n`,
+        check((await hand.text()).includes(`# 2.5 high\nset  ceiling ${n(2.5)}\nset thickness ${n(0.1)}\nwall south from ${n(4)} 0 to 0 0\n`), await hand.text());
+        check(await hand.text('edits/e.txt') === `remodel-script 1\n# by 0.4\nmove west by ${n(0.4)}\nbox chest from ${n(1)} ${n(1)} to ${n(2)} ${n(1.5)} top ${n(0.8)} turn 30\ncolour box/chest 0.1 0.2 0.3\n`,
             await hand.text('edits/e.txt'));
         const after = JSON.stringify(await hand.page.run('app.texts.now'));
         await hand.page.run('app.undo()');

@@ -399,13 +399,28 @@ class App {
             button.type = 'button';
             image.src = this.pictures.small(p.id);
             image.alt = '';
-            button.append(image, p.id);
+            const face = this.faceOf(p.id);
+            button.append(image, face ? face.turn : p.id);
+            if (face) button.setAttribute('aria-label', `${p.id}: panorama ${face.of}, ${face.turn}`);
             button.onclick = () => this.openPhoto(i);
             return button;
         });
         const first = this.photos.findIndex((p) => p.isReference);
         el('photos').replaceChildren(...this.buttons);
+        /* faces of one panorama were taken from one place */
+        this.photos.forEach((p, i) => {
+            const of = (k) => (this.photos[k] && this.faceOf(this.photos[k].id) || {}).of;
+            if (of(i) && of(i) !== of(i - 1)) this.buttons[i].before(title(of(i)));
+            else if (i && !of(i) && of(i - 1) && !p.isReference) this.buttons[i].before(title('Photos'));
+        });
         if (first >= 0) this.buttons[first].before(title('Reference images'));
+    }
+
+    /* {of: the panorama, turn: where it looks} of a photo that is cut out of a panorama, by its name; null of others */
+    faceOf(id) {
+        const face = /^(.+)_yaw(\d{3})$/.exec(id), turn = face && +face[2];
+        if (!face || turn % 60 || turn > 300) return null;
+        return {of: face[1], turn: !turn ? 'ahead' : turn <= 180 ? `${turn}° right` : `${360 - turn}° left`};
     }
 
     openPhoto(i) {

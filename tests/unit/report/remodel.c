@@ -48,10 +48,10 @@ static void put_view(const char *view)
     exr_image_release(&im);
 }
 
-/* Views a, b@0 and b@1 of one photo, c. */
-static void put_views(void)
+/* Views a, b@0 and b@1 of one photo, c; a and c are of the photos of these names. */
+static void put_views_of(const char *a, const char *c)
 {
-    static const char *const views[][2] = {{"a", "a"}, {"b@0", "b"}, {"b@1", "b"}, {"c", "c"}};
+    const char *const views[][2] = {{"a", a}, {"b@0", "b"}, {"b@1", "b"}, {"c", c}};
     char text[512] = "remodel-lenses 1\n";
     for (int i = 0; i < 4; i++)
         snprintf(text + strlen(text), sizeof text - strlen(text), "%s %s PINHOLE 8 8 8 8 4 4 turn 1 0 0 0\n",
@@ -66,6 +66,8 @@ static void put_views(void)
     put("views/images.txt", text);
     for (int i = 0; i < 4; i++) put_view(views[i][0]);
 }
+
+static void put_views(void) { put_views_of("a", "c"); }
 
 /* The record of a view after an edit, and its pictures if the edit changes it. */
 static void put_guess(const char *edit, const char *view, double changed, double nothing, double guessed)
@@ -241,6 +243,32 @@ static void each_photo_has_one_picture_and_all_changes_that_it_shows(void **stat
     assert_true(fabs(rooms->photos[0].looks[0].changed - 27.5) < 1e-9); /* of b@0 and b@1 */
     remodel_contents_release(&c);
     remodel_contents_release(&c);
+}
+
+/* Faces of one panorama stand together, under its name, behind the one that tells most. */
+static void faces_of_a_panorama_are_one_place(void **state)
+{
+    struct remodel_contents c;
+    (void)state;
+    put_views_of("hall_yaw060", "hall_yaw300");
+    put(in_edit("no-wall", "model", ".txt"), "");
+    put_sight("no-wall", "a", 40, 0);
+    put_sight("no-wall", "b@0", 30, 0);
+    put_sight("no-wall", "b@1", 30, 0);
+    put_sight("no-wall", "c", 20, 0);
+    read_all(&c);
+    assert_int_equal(c.rooms.photo_count, 3);
+    assert_string_equal(c.rooms.photos[0].photo, "hall_yaw060");
+    assert_string_equal(c.rooms.photos[1].photo, "hall_yaw300");
+    assert_string_equal(c.rooms.photos[2].photo, "b");
+    remodel_contents_release(&c);
+    char *page = page_of("loft", NULL);
+    assert_int_equal(count_words(page, "<section class=\"place\" aria-label=\"Panorama hall\">"), 1);
+    expect_words(page, "<h3>Panorama hall</h3>");
+    expect_words(page, "data-photo=\"Panorama hall, 60 degrees to the right\"");
+    expect_words(page, "data-photo=\"Panorama hall, 60 degrees to the left\"");
+    expect_words(page, "data-photo=\"Photograph b\"");
+    free(page);
 }
 
 static void what_is_known_comes_before_what_is_guessed(void **state)
@@ -455,6 +483,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(each_photo_has_one_picture_and_all_changes_that_it_shows, empty_scratch),
+        cmocka_unit_test_setup(faces_of_a_panorama_are_one_place, empty_scratch),
         cmocka_unit_test_setup(what_is_known_comes_before_what_is_guessed, empty_scratch),
         cmocka_unit_test_setup(the_page_has_pictures_plans_films_and_exports, empty_scratch),
         cmocka_unit_test_setup(new_light_is_in_the_same_picture_as_the_change, empty_scratch),
