@@ -241,6 +241,16 @@ const tests = {
         check((await drawn(hand)).includes('clear'), 'the plan has no name for it');
     },
 
+    /* Faces of one panorama are listed under its name. */
+    async faces_of_a_panorama_are_listed_as_one_place(hand) {
+        await hand.begin(ROOM);
+        await hand.page.run("window.ids = app.photos.map((p) => p.id); ['hall_yaw060', 'hall_yaw300', 'p2', 'p3'].forEach((id, i) => { app.photos[i].id = id; }); app.listPhotos()");
+        const listed = await hand.page.run("[...document.querySelectorAll('#photos > *')].map((e) => e.textContent)"), name = await hand.page.run("document.querySelector('#photos button').getAttribute('aria-label')");
+        await hand.page.run('ids.forEach((id, i) => { app.photos[i].id = id; }); app.listPhotos(); app.openPhoto(0)');
+        check(JSON.stringify(listed.slice(0, 6)) === JSON.stringify(['hall', '60° right', '60° left', 'Photos', 'p2', 'p3']), JSON.stringify(listed));
+        check(name === 'hall_yaw060: panorama hall, 60° right', name);
+    },
+
     async everything_has_a_name_and_contrast(hand) {
         await hand.begin(ROOM, {'edits/e.txt': 'remodel-script 1\n'});
         const nameless = await hand.page.run("[...document.querySelectorAll('button, input, select, textarea, canvas')].filter((e) => !(e.textContent.trim() || e.getAttribute('aria-label') || e.closest('label') || e.title)).map((e) => e.id || e.outerHTML)");

@@ -88,6 +88,9 @@ the_page_is_drawn_in()
     verdicts
     timeout 100 node "$root/tests/browser/draw_marks.js" "$PWD/page" the_draft_shows_the_edited_room what_is_saved_is_in_the_folder >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
     verdicts
+    node "$root/tests/browser/access.js" "$PWD/page/index.html" "$PWD/profile" app.ready >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+    cat said.txt
+    ! grep -q '^not ok' said.txt || fail "$(grep -m1 '^not ok' said.txt)"
 }
 
 for t in the_module_makes_the_bytes_of_the_program inputs_that_are_missing_are_named points_are_small_and_near_their_places the_page_is_drawn_in; do run $t; done

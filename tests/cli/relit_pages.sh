@@ -63,6 +63,12 @@ the_browser_compares_before_and_after()
     command -v node >/dev/null || skip "node is not installed (Debian: nodejs)"
     node -e "process.exit(require('$root/tests/browser/chromium.js').Chromium.find() ? 0 : 1)" || skip "chromium is not installed"
     node "$root/tests/browser/report_page.js" "$O" || fail "see above"
+    local page
+    for page in index.html page/numbers.html; do
+        node "$root/tests/browser/access.js" "$PWD/$O/$page" "$PWD/profile" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+        cat said.txt
+        ! grep -q '^not ok' said.txt || fail "$page: $(grep -m1 '^not ok' said.txt)"
+    done
 }
 
 for t in make_relight_adds_the_light_to_the_page_of_edits light_that_an_object_changes_is_shown plain_make_shows_it_on_both_pages the_browser_compares_before_and_after films_and_given_cameras_are_relit; do run "$t"; done

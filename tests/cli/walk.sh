@@ -54,6 +54,9 @@ the_browser_draws_what_render_model_draws()
     command -v node >/dev/null || skip "node is not installed (Debian: nodejs)"
     node -e "process.exit(require('$root/tests/browser/chromium.js').Chromium.find() ? 0 : 1)" || skip "chromium is not installed"
     node "$root/tests/browser/walk_page.js" "$O/walk" || fail "see above"
+    node "$root/tests/browser/access.js" "$PWD/$O/walk/index.html" "$PWD/profile" "document.getElementById('wait').hidden" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+    cat said.txt
+    ! grep -q '^not ok' said.txt || fail "$(grep -m1 '^not ok' said.txt)"
 }
 
 for t in the_page_and_its_data_are_made bytes_do_not_depend_on_threads a_damaged_atlas_leaves_the_page \
