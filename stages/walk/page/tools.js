@@ -92,7 +92,6 @@ const buttons = () => {
         const b = $(`tool-${t[0]}`);
         if (t[5]) b.setAttribute('aria-pressed', !!t[5]());
         b.setAttribute('aria-disabled', !!(t[6] && !t[6]()));
-        b.style.opacity = t[6] && !t[6]() ? 0.5 : 1;
     }
     const compare = S.compare && S.edit > 0;
     $('edit').value = S.edit;
