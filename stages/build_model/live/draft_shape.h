@@ -1,5 +1,5 @@
-/* draft_shape.h - triangles that rays are traced against: furniture and objects in the draft of an edit. The module that
- * pages run has no Embree (common/light/ray_scene.h). */
+/* draft_shape.h - triangles that rays are traced against: furniture and objects in the draft of an edit. The module
+ * that pages run has no Embree (common/light/ray_scene.h). */
 #ifndef REMODEL_BUILD_MODEL_DRAFT_SHAPE_H
 #define REMODEL_BUILD_MODEL_DRAFT_SHAPE_H
 

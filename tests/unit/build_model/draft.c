@@ -134,7 +134,8 @@ static void furniture_stays_or_goes(void **state)
     assert_pixel(cell_at(A, at), A, at);
 }
 
-/* A panel at x = 1.4 goes to x = 2.8: there a sees it as b sees it where it was, because b looks at it more as a does. */
+/* A panel at x = 1.4 goes to x = 2.8: there a sees it as b sees it where it was, because b looks at it
+ * more as a does. */
 static void furniture_stands_at_its_new_place(void **state)
 {
     double at[2], from[2];
