@@ -1,8 +1,8 @@
 /* draft_things.c - furniture and objects in the draft of an edit; see draft_things.h.
  *
  *  * A thing at a new place is looked at where it was: the ray is moved back, and meets the shape that make things
- * found. Of the photographs that show this place of the thing, by their masks and with nothing of the thing before it, the one
- * counts that looks at it most as the ray does.
+ * found. Of the photographs that show this place of the thing, by their masks and with nothing of the thing before it,
+ * the one counts that looks at it most as the ray does.
  *  * An object has the colour of its material, brighter where it faces the camera and where it faces up. */
 #include "stages/build_model/live/draft_things.h"
 
