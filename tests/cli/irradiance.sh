@@ -1,4 +1,4 @@
-# gather_irradiance: points, a face and a view of a synthetic room; lamps; glossy materials; threads; errors; make irradiance
+# gather_irradiance: points, a face and a view of a synthetic room; lamps; glossy materials; the absolute scale; threads; errors; make irradiance
 . tests/lib.sh
 project irradiance
 photos set --size 128x96 >/dev/null
@@ -147,6 +147,48 @@ make_gathers_at_points_and_views()
     grep -qa 'specular.R' $O/relight/irradiance/"$view".exr || fail "the view has no specular channels"
 }
 
+# calibrate CODE WORD LUX-LINE...: measurements of lux.txt in the room; a word on standard error
+calibrate()
+{
+    local code=$1 word=$2 rc=0; shift 2
+    { echo 'remodel-lux 1'; printf '%s\n' "$@"; } >lux.txt
+    rm -f made.txt
+    "$B/bin/calibrate_light" --records $O/photos --views $O/views "${inputs[@]:0:8}" --set estimator=hemicube --set hemicube=16 --marks lux.txt --out made.txt 2>err.txt || rc=$?
+    [ "$rc" = "$code" ] || { cat err.txt; fail "$*: exit $rc, wanted $code"; }
+    grep -qF -- "$word" err.txt || { cat err.txt; fail "$*: nothing says '$word'"; }
+    [ "$code" = 0 ] || [ ! -e made.txt ] || fail "$*: a product was left"
+}
+scale_is() { awk -v wanted="$1" '/^scale / { exit !($2 / wanted > 0.999999 && $2 / wanted < 1.000001) }' made.txt || { cat made.txt; fail "the scale is not $1"; }; }
+
+light_gets_an_absolute_scale()
+{
+    local face=floor photo light
+    face=$(sed -nE "s/^face [0-9]+ ([^ ]*floor[^ ]*) 0 0 1 .*/\1/p" $O/model/model.txt | sed -n 1p)
+    photo=$(awk -v v="$view" '$1 == v { print $2 }' $O/views/lenses.txt)
+    m luminance
+    grep -q '^from unknown' $O/lux/scale.txt || { cat $O/lux/scale.txt; fail "photos without exposures have a scale"; }
+    calibrate 0 'from measurements' "illuminance floor 100 on $face"
+    light=$(awk '/^measurement/ { print $5 }' made.txt)
+    scale_is "$(awk -v l="$light" 'BEGIN { printf "%.12g", 100 / l }')"
+    calibrate 0 'from measurements' "illuminance floor 250 on $face" "luminance wall $(awk -v l="$light" 'BEGIN { printf "%.12g", 250 / l }') in $photo 40 40 60 50 within 0"
+    light=$(awk '/^measurement wall/ { print $5 }' made.txt)
+    calibrate 0 'from measurements' "luminance wall $(awk -v l="$light" 'BEGIN { printf "%.12g", 77 * l }') in $photo 40 40 60 50"
+    scale_is 77
+    calibrate 0 'from measurements' "illuminance p 100 in $photo 50 60"
+    calibrate 1 "lux.txt:2: the model has no face ${face}x; did you mean $face" "illuminance a 100 on ${face}x"
+    calibrate 1 'lux.txt:2: pixel 4000 5 is not inside the photo' "illuminance a 100 in $photo 4000 5"
+    calibrate 1 'lux.txt:2: found "nowhere"' "luminance a 100 in nowhere 4 5"
+    ! "$B/bin/calibrate_light" --records $O/photos --views $O/views --vita $O/vita --out made.txt 2>err.txt || fail "a VITA without its model was accepted"
+    grep -qF -- '--vita needs --model and --axes' err.txt || { cat err.txt; fail "nothing says what --vita needs"; }
+    # make: a file of measurements that came is read, and read again when it changes
+    printf 'remodel-lux 1\nilluminance floor 100 on %s\n' "$face" >scenes/t/lux.txt
+    m luminance
+    grep -q '^from measurements' $O/lux/scale.txt || { cat $O/lux/scale.txt; fail "lux.txt does not reach the scale"; }
+    rm scenes/t/lux.txt
+    m luminance
+    grep -q '^from unknown' $O/lux/scale.txt || { cat $O/lux/scale.txt; fail "the scale kept what lux.txt said"; }
+}
+
 what_is_wrong_is_named()
 {
     gather 2 'give one of --points FILE, --view NAME and --face ID' "${inputs[@]}" --out made
@@ -174,4 +216,4 @@ what_is_wrong_is_named()
     grep -qF 'GATHER_POINTS=no-such is no file' log || { cat log; fail "nothing names GATHER_POINTS"; }
 }
 
-for t in a_face_gets_points_at_a_step points_of_a_file_have_what_the_face_had bytes_do_not_depend_on_threads a_lamp_adds_light_and_is_reported people_get_pictures_and_a_record the_page_shows_the_light glossy_materials_reflect_and_bytes_do_not_depend_on_threads materials_without_gloss_change_no_number make_gathers_at_points_and_views what_is_wrong_is_named; do run "$t"; done
+for t in a_face_gets_points_at_a_step points_of_a_file_have_what_the_face_had bytes_do_not_depend_on_threads a_lamp_adds_light_and_is_reported people_get_pictures_and_a_record the_page_shows_the_light glossy_materials_reflect_and_bytes_do_not_depend_on_threads materials_without_gloss_change_no_number make_gathers_at_points_and_views light_gets_an_absolute_scale what_is_wrong_is_named; do run "$t"; done
