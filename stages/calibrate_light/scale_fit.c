@@ -32,7 +32,10 @@ double scale_exposure(const struct photo_record *r)
 {
     const struct photo_info *i = &r->info;
     if (!(i->seconds > 0 && i->f_number > 0 && i->iso > 0)) return 0;
-    return r->bracket_count ? r->white : i->seconds * i->iso / (i->f_number * i->f_number);
+    /* views of one exposure may keep their own white: then both numbers are 1 in their records */
+    const bool own_white =
+        !r->bracket_count || (r->bracket_count == 1 && r->brackets[0].exposure == 1 && r->white == 1);
+    return own_white ? i->seconds * i->iso / (i->f_number * i->f_number) : r->white;
 }
 
 static struct lux_interval around(double level, double half)

@@ -578,10 +578,12 @@ static enum status make_record(struct photo_record *r, const struct bracket_view
 {
     const struct photo_record *middle = &scan->photos[view->photos[view->middle]].record;
     *r = (struct photo_record){.info = middle->info, .middle = view->middle, .white = v->white};
-    const struct exposure *e = &v->exposures[view->photos[view->middle]]; /* exposures.txt wins over EXIF */
-    r->info.seconds = e->seconds;
-    r->info.f_number = e->f_number;
-    r->info.iso = e->iso;
+    if (!v->untimed) { /* exposures.txt wins over EXIF */
+        const struct exposure *e = &v->exposures[view->photos[view->middle]];
+        r->info.seconds = e->seconds;
+        r->info.f_number = e->f_number;
+        r->info.iso = e->iso;
+    }
     strcpy(r->hash, middle->hash);
     r->id = strdup(view->id);
     r->brackets = calloc((size_t)view->count, sizeof *r->brackets);

@@ -22,9 +22,14 @@ static void white_follows_from_the_exposure(void **state)
     const struct lux_interval i = scale_of_exposures(&exposure, 1, &params);
     assert_true(near(i.scale, 4608, 1e-12) && near(i.low, 2304, 1e-12) && near(i.high, 9216, 1e-12));
     /* of several exposures, white counts */
+    struct bracket brackets[3] = {{.exposure = 1 / 38.4}};
+    r.brackets = brackets;
     r.bracket_count = 3;
     r.white = 1 / 19.2;
     assert_true(scale_exposure(&r) == r.white);
+    /* a view whose white is its own, as import_photos writes it */
+    brackets[0].exposure = r.white = r.bracket_count = 1;
+    assert_true(near(scale_exposure(&r), 1 / 38.4, 1e-12));
     r.info.iso = 0;
     assert_true(scale_exposure(&r) == 0);
     assert_true(scale_of_exposures(&exposure, 0, &params).scale == 0);
