@@ -2,7 +2,7 @@
  *
  * reads   RECORDS/PHOTO.txt                              the exposures of the photos
  *         VIEWS/cameras.txt, images.txt, lenses.txt      the cameras
- *         MARKS                                          scenes/NAME/lux.txt: what somebody measured; optional, and then
+ *         MARKS                                          scenes/NAME/lux.txt: what somebody measured; optional. Then
  *         VIEWS/VIEW.exr                                 the views of photos in which a luminance was measured
  *         MODEL, AXES, VITA/atlas.txt, page0.exr, ...,   the textured model, which gives the irradiance where an
  *         OUTDOORS, LIGHTS, REFERENCES/ID.exr, THINGS    illuminance was measured

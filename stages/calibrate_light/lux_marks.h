@@ -1,12 +1,12 @@
-/* lux_marks.h - scenes/NAME/lux.txt: what somebody measured with a lux-meter or a luminance meter, in the light in which
- * the photos were taken.
+/* lux_marks.h - scenes/NAME/lux.txt: what somebody measured with a lux-meter or a luminance meter, in the light in
+ * which the photos were taken.
  *
  *   remodel-lux 1
  *   illuminance NAME LUX in VIEW X Y [within PERCENT]           a meter that lies on the surface at this pixel
  *   illuminance NAME LUX on FACE [within PERCENT]               mean over a face of the model
  *   luminance NAME CD in VIEW X Y [X Y] [within PERCENT]        cd/m2 of a pixel, or of a rectangle of pixels
  *
- * VIEW is a photo's id or a view's name; pixels are those of the stored photograph. PERCENT: the meter's error, 95 %. */
+ * VIEW is a photo's id or a view's name; pixels are those of the stored photo. PERCENT: the meter's error, 95 %. */
 #ifndef REMODEL_LUX_MARKS_H
 #define REMODEL_LUX_MARKS_H
 
