@@ -4,10 +4,10 @@
  * photo; its mean counts. White that is clipped is only a lower bound, so that a patch with more than CLIPPED of it is
  * refused.
  *
- * Illuminance. The surface at a pixel is the first one of the model or of its furniture on the pixel's ray. A meter lies
- * on it, on the side of the photo, so that it has the surface's normal; furniture is rough, so that one that looks more
- * up than aside counts as level. Over a face the mean of a grid counts. Irradiance is that of the textured model with
- * its lamps and windows, as gather_irradiance finds it.
+ * Illuminance. The surface at a pixel is the first one of the model or of its furniture on the pixel's ray. A meter
+ * lies on it, on the side of the photo, so that it has the surface's normal; furniture is rough, so that one that
+ * looks more up than aside counts as level. Over a face the mean of a grid counts. Irradiance is that of the textured
+ * model with its lamps and windows, as gather_irradiance finds it.
  *
  * The expected error of the quotient, as a logarithm, joins the meter's, the gather's own and that of photographs or of
  * irradiance as such (parameters). */
