@@ -54,7 +54,7 @@ the_sky_and_the_sun_are_written_down()
 
 bytes_do_not_depend_on_threads()
 {
-    for n in 1 2; do bake 0 'directions' "${inputs[@]}" --threads $n --vita $O/fill --sky two/$n.txt --out two/$n.exr; done
+    for n in 1 2; do bake 0 'directions' "${inputs[@]}" --threads $n --vita $O/fill --things $O/things --sky two/$n.txt --out two/$n.exr; done
     cmp two/1.txt two/2.txt
     cmp two/1.exr two/2.exr
     cmp two/1.exr $O/outdoors/outdoors.exr
