@@ -44,7 +44,7 @@ static const double APART = 8, NEAR = 4, SMALLEST = 0.02; /* degrees: of peaks; 
 static const double GRAZING = 0.05;                       /* cosine: surfaces that the sun only grazes count as unlit */
 static const double FINER = 0.25;                         /* of a coarse square's side */
 /* what a patch of sun has at least */
-static const double MIN_SURE = 20, MIN_GAIN = 0.05, MIN_OVER_NEXT = 2, MIN_CONTRAST = 0.06;
+static const double MIN_SURE = 20, MIN_OVER_RIVAL = 1.4, MIN_OVER_NEXT = 2, MIN_GAIN = 0.05, MIN_CONTRAST = 0.06;
 
 static struct vec3 direction_at(double azimuth, double elevation)
 {
@@ -280,10 +280,11 @@ static enum status refine_peak(struct peak *peak, struct atlas_squares *fine, co
 
 /* ----------------------------------------------------------------------------------------------------------- search */
 
-/* Whether the best direction is that of a sun. */
+/* Whether the best direction is that of a sun. No other one is nearly as sure, or explains half as much beside it. */
 static bool is_sun(const struct sun_search *s)
 {
-    return s->evidence.sure >= MIN_SURE && s->fit.gain >= MIN_GAIN && s->fit.gain >= MIN_OVER_NEXT * s->next &&
+    const bool alone = s->evidence.sure >= MIN_OVER_RIVAL * s->rival || s->fit.gain >= MIN_OVER_NEXT * s->next;
+    return alone && s->evidence.sure >= MIN_SURE && s->fit.gain >= fmax(s->next, MIN_GAIN) &&
            s->evidence.contrast >= MIN_CONTRAST;
 }
 
@@ -299,6 +300,7 @@ static enum status choose_peak(struct sun_search *s, struct peak *peaks, int cou
     for (int k = 0; !err->status && k < count; k++) {
         double rest = 0;
         if (angle_between(peaks[k].fit.direction, peaks[best].fit.direction) < APART) continue;
+        s->rival = fmax(s->rival, peaks[k].evidence.sure);
         if (!sun_fit_rest(&rest, &peaks[best].fit, &peaks[k].fit, &fine[k], scene->model, err))
             s->next = fmax(s->next, rest);
     }

@@ -19,6 +19,7 @@ struct sun_search {
     struct sun_fit fit;           /* of the best direction, found or not */
     struct sun_evidence evidence; /* its own */
     double next;                  /* what the next best direction, far from it, explains beside it; a gain */
+    double rival;                 /* how sure the next best direction, far from it, is */
     struct atlas_squares edges;   /* squares close to the edges of its patches; owned */
 };
 
