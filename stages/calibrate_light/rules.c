@@ -23,6 +23,7 @@ RULES(calibrate_light)
     rule_makes(g, PATH(g, LUX_SCALE));
     rule_takes_cameras(g);
     rule_needs(g, PATH(g, LENSES));
+    for (int i = 0; i < f->photos.count; i++) rule_needs(g, PATH(g, PHOTO, .photo = f->photos.names[i]));
     rule_option(g, "--records", FOLDER(g, PHOTO_LIST));
     /* a file of measurements that came or went is a change whatever its time */
     rule_needs(g, graph_stamp(g, "lux.txt", marks ? marks : "none"));
