@@ -81,8 +81,12 @@ static const struct sheet_row *find_row(const struct light_sheet *s, const struc
 
 static void put_row(FILE *to, const struct sheet_row *r, const struct light_sheet *before)
 {
-    fprintf(to, "%s\t%s\t%s\t%d\t%.4g\t%.4g\t%.4g\t%.4g\t%.4g\t%.3g\t%s", r->state, r->kind, r->place, r->points,
-            r->mean, r->low, r->high, r->least, r->most, r->mean > 0 ? r->least / r->mean : 0, r->unit);
+    fprintf(to, "%s\t%s\t%s\t%d\t%.4g", r->state, r->kind, r->place, r->points, r->mean);
+    if (r->high > r->low)
+        fprintf(to, "\t%.4g\t%.4g", r->low, r->high);
+    else
+        fprintf(to, "\t-\t-");
+    fprintf(to, "\t%.4g\t%.4g\t%.3g\t%s", r->least, r->most, r->mean > 0 ? r->least / r->mean : 0, r->unit);
     if (before) {
         const struct sheet_row *was = find_row(before, r);
         if (was)
@@ -108,6 +112,15 @@ enum status sheet_write(const struct light_sheet *s, const struct light_sheet *b
     return err->status;
 }
 
+/* An end of the interval; without one it is the mean. */
+static enum status read_end(double *end, double mean, struct textfile *t, const char *what, struct err *err)
+{
+    char *word;
+    *end = mean;
+    if (textfile_word(t, what, &word, err) || !strcmp(word, "-")) return err->status;
+    return textfile_number_of(t, word, what, 0, INFINITY, end, err);
+}
+
 static enum status read_row(struct light_sheet *s, struct textfile *t, struct err *err)
 {
     char *word[3];
@@ -119,8 +132,8 @@ static enum status read_row(struct light_sheet *s, struct textfile *t, struct er
     struct sheet_row *r = &s->rows[s->count - 1];
     if (textfile_int(t, "a number of points", 1, 1 << 30, &points, err) ||
         textfile_number(t, "a mean", 0, INFINITY, &r->mean, err) ||
-        textfile_number(t, "the low end of the interval", 0, INFINITY, &r->low, err) ||
-        textfile_number(t, "the high end of the interval", 0, INFINITY, &r->high, err) ||
+        read_end(&r->low, r->mean, t, "the low end of the interval", err) ||
+        read_end(&r->high, r->mean, t, "the high end of the interval", err) ||
         textfile_number(t, "the least", 0, INFINITY, &r->least, err) ||
         textfile_number(t, "the most", 0, INFINITY, &r->most, err) ||
         textfile_number(t, "a uniformity", 0, INFINITY, &uniformity, err) || textfile_word(t, "a unit", &word[0], err))
