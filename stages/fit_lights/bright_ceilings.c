@@ -138,7 +138,7 @@ static struct bright_place surround(const struct sheet *s, const int *cells, int
     }
     const double x = high.x - low.x + side, y = high.y - low.y + side,
                  part = sqrt(fmin(1, count * side * side / (x * y)));
-    return (struct bright_place){vec3_scale(vec3_add(low, high), 0.5), x * part / 2, y * part / 2};
+    return (struct bright_place){vec3_scale(vec3_add(low, high), 0.5), x * part / 2, y * part / 2, false};
 }
 
 static enum status list_places(struct bright_places *b, struct sheet *s, double side, double least, struct err *err)

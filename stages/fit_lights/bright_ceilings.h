@@ -9,6 +9,7 @@
 struct bright_place {
     struct vec3 at; /* its middle, on the ceiling */
     double x, y;    /* half sides */
+    bool is_round;  /* shines evenly to all sides, not down */
 };
 
 /* {0} is the empty state; everything is owned. */

@@ -16,7 +16,10 @@
  * At a bright place of a ceiling (bright_ceilings.c) the photographs show the lamp: there its place and outline are
  * known, and it is taken if the loss falls by LEAST_BRIGHT.
  *
- * Limits. A lamp stands close below a ceiling and shines down. */
+ * What lamps below ceilings leave may come from a lamp on a stand or a wall. Places in the air are tried as they are,
+ * with light that goes evenly to all sides: good enough to say that there is one, not to use it.
+ *
+ * Limits. A lamp that is used stands close below a ceiling and shines down. */
 #include "stages/fit_lights/unseen_fit.h"
 
 #include <math.h>
@@ -36,9 +39,11 @@ enum {
     BLOCKS = 8,
     LUMINANCE = 3,
     FACES = 2,
-    PARTS = 4 /* a side of a lamp */
+    LEVELS = 3, /* of lamps that stand, between floor and ceiling */
+    PARTS = 4   /* a side of a lamp */
 };
 static const double SPACING = 0.14;      /* of the model's height: of the grid, at least */
+static const double WIDE = 0.25;         /* the same of lamps that stand or hang on walls */
 static const double BELOW = 0.01;        /* of a room's height: distance of a lamp from the ceiling */
 static const double NEAREST = 0.1;       /* of the model's height: nearer squares tell nothing */
 static const double NOISE = 0.1;         /* of a texture, a logarithm */
@@ -47,14 +52,15 @@ static const double LEAST = 0.2;         /* share of the loss that a lamp must e
 static const double BLOCK = 0.3;         /* of the model's height: the side of a block */
 static const double FINEST = 16;         /* steps of the place end at the spacing over this */
 
-static double part_factor(const struct model_rays *rays, struct vec3 lamp, struct vec3 at, struct vec3 normal)
+static double part_factor(const struct model_rays *rays, struct vec3 lamp, bool is_round, struct vec3 at,
+                          struct vec3 normal)
 {
     const struct vec3 d = vec3_sub(lamp, at);
-    const double r2 = vec3_dot(d, d);
-    if (d.z <= 0 || vec3_dot(d, normal) <= 0) return 0;
+    const double r2 = vec3_dot(d, d), down = is_round ? sqrt(r2) : d.z;
+    if (down <= 0 || vec3_dot(d, normal) <= 0) return 0;
     const struct vec3 from = vec3_add(at, vec3_scale(normal, 4 * rays->rays.epsilon));
     if (ray_scene_blocked(&rays->rays, from, vec3_sub(lamp, from), 1)) return 0;
-    return vec3_dot(d, normal) * d.z / (r2 * r2);
+    return vec3_dot(d, normal) * down / (r2 * r2);
 }
 
 double unseen_form_factor(const struct model_rays *rays, const struct bright_place *lamp, struct vec3 at,
@@ -65,7 +71,7 @@ double unseen_form_factor(const struct model_rays *rays, const struct bright_pla
     for (int k = 0; k < side * side; k++) {
         const double x = (2 * (k % side) + 1.0) / side - 1, y = (2 * (k / side) + 1.0) / side - 1;
         const struct vec3 part = vec3_add(lamp->at, vec3_make(x * lamp->x, y * lamp->y, 0));
-        sum += part_factor(rays, part, at, normal);
+        sum += part_factor(rays, part, lamp->is_round, at, normal);
     }
     return sum / (side * side);
 }
@@ -342,13 +348,20 @@ static bool fit_bright(struct unseen_lamp *lamp, struct search *s, const struct 
     return true;
 }
 
+/* Fits a lamp to the first `count` trials. Returns that which explains most. */
+static struct trial *try_all(struct search *s, int count)
+{
+    int best = 0;
+    parallel_for((size_t)count, 1, try_range, s);
+    for (int i = 1; i < count; i++)
+        if (s->trials[i].loss < s->trials[best].loss) best = i;
+    return &s->trials[best];
+}
+
 static bool find_one(struct unseen_lamp *lamp, struct search *s)
 {
-    int best = 0, faces;
-    parallel_for((size_t)s->count - 1, 1, try_range, s);
-    for (int i = 1; i + 1 < s->count; i++)
-        if (s->trials[i].loss < s->trials[best].loss) best = i;
-    struct trial *t = &s->trials[best];
+    int faces;
+    struct trial *t = try_all(s, s->count - 1);
     refine(t, &s->trials[s->count - 1]);
     *lamp = (struct unseen_lamp){.place = t->at, .gain = gain_of(t, &faces)};
     if (!(t->a > 0) || lamp->gain < LEAST || faces < FACES) return false;
@@ -369,10 +382,41 @@ enum status unseen_fit(struct unseen_lamp *lamps, int *count, struct unseen_ligh
         for (int i = 0; i < l->bright_count && *count < MAX_UNSEEN; i++)
             *count += fit_bright(&lamps[*count], &s, &l->bright[i]);
         while (more && *count < MAX_UNSEEN) {
-            for (int i = 0; i <= found; i++) s.trials[i].at = (struct bright_place){places[i < found ? i : 0], 0, 0};
+            for (int i = 0; i <= found; i++) s.trials[i].at = (struct bright_place){.at = places[i < found ? i : 0]};
             more = find_one(&lamps[*count], &s);
             *count += more;
         }
+    }
+    trials_release(&s);
+    return err->status;
+}
+
+/* Places in the air, a part of a room's height below its ceiling. */
+static int list_standing(struct vec3 *places, const struct unseen_light *l)
+{
+    int count = 0;
+    for (int k = 1; k <= LEVELS; k++) {
+        const struct ceiling_grid grid = {
+            .rays = l->rays, .spacing = WIDE, .below = (double)k / (LEVELS + 1), .most = MOST_PLACES / LEVELS};
+        count += ceiling_places_list(places + count, &grid);
+    }
+    return count;
+}
+
+enum status unseen_fit_standing(struct unseen_lamp *lamp, bool *found, struct unseen_light *l, struct err *err)
+{
+    struct vec3 places[MOST_PLACES];
+    struct search s = {.l = l};
+    const int count = list_standing(places, l);
+    int faces;
+    *found = false;
+    if (count && !find_logs(&s, err) && !trials_make(&s, count, err)) {
+        for (int i = 0; i < count; i++) s.trials[i].at = (struct bright_place){.at = places[i], .is_round = true};
+        struct trial *t = try_all(&s, count);
+        *lamp = (struct unseen_lamp){.place = t->at, .gain = gain_of(t, &faces)};
+        for (int c = 0; c < 3; c++) lamp->intensity[c] = t->a;
+        *found = t->a > 0 && lamp->gain >= LEAST && faces >= FACES;
+        if (*found) add_light(lamp, t, l);
     }
     trials_release(&s);
     return err->status;

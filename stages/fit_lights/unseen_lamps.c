@@ -177,7 +177,8 @@ enum status unseen_lamps_find(struct unseen_lamps *u, const struct model_field *
         leave_out_marked(&bright, &scene->lights);
         light.bright = bright.list;
         light.bright_count = bright.count;
-        if (!add_lamps(light.known, u, scene, furnished, err)) unseen_fit(u->lamps, &u->count, &light, err);
+        if (!add_lamps(light.known, u, scene, furnished, err) && !unseen_fit(u->lamps, &u->count, &light, err))
+            unseen_fit_standing(&u->standing, &u->stands, &light, err);
     }
     bright_ceilings_release(&bright);
     free(light.known);
@@ -240,8 +241,26 @@ static const char *face_at(const struct lit_model *model, struct vec3 at, struct
     return solid_face_name(&model->rays.mesh, (int)hit.id);
 }
 
+static void report_standing(const struct unseen_lamps *u, const struct lit_model *model)
+{
+    const struct unseen_lamp *l = &u->standing;
+    const struct vec3 normal = normal_of(u, l);
+    double pixel[2];
+    const char *photo = best_photo(pixel, model, l->brightest, normal);
+    char seen[200] = "";
+    if (photo) snprintf(seen, sizeof seen, " (pixel %.0f %.0f of %s)", pixel[0], pixel[1], photo);
+    log_warn(
+        "%s at %.2f %.2f %.2f%s is %.0f %% brighter than all lamps and windows make it, and no lamp below a ceiling "
+        "explains that; a lamp on a stand or a wall near %.2f %.2f %.2f would. It is not used. If a lamp on a wall "
+        "is there, mark its corners in lights.txt: area NAME in PHOTO U V U V U V U V. If not, a mark of another "
+        "lamp may be off, or the sun shines in",
+        face_at(model, l->brightest, normal), l->brightest.x, l->brightest.y, l->brightest.z, seen, 100 * l->excess,
+        l->place.at.x, l->place.at.y, l->place.at.z);
+}
+
 void unseen_lamps_report(const struct unseen_lamps *u, const struct lit_model *model)
 {
+    if (u->stands) report_standing(u, model);
     for (int k = 0; k < u->count; k++) {
         const struct unseen_lamp *l = &u->lamps[k];
         const struct vec3 normal = normal_of(u, l);

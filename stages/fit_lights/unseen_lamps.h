@@ -11,7 +11,9 @@
 struct unseen_lamps {
     struct unseen_lamp lamps[MAX_UNSEEN];
     int count;
-    double side; /* of each, model units */
+    struct unseen_lamp standing; /* on a stand or a wall; it is said, not used */
+    bool stands;                 /* there is one */
+    double side;                 /* of each lamp below a ceiling, model units */
     bool are_used;
     struct atlas_squares squares;
     double (*without_lamps)[3]; /* irradiance of the squares from all but lamps */

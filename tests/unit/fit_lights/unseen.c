@@ -7,6 +7,7 @@
 enum { SCALE = 10, SQUARES = 1500 }; /* SCALE: texels a metre */
 
 static struct room_lamp truth; /* intensity 0: none */
+static bool is_standing;       /* it shines evenly to all sides */
 static bool is_sunny;          /* a patch on the floor, twice as bright */
 static bool is_hidden;         /* photographs show the ceiling, and no lamp there */
 
@@ -20,7 +21,10 @@ static double known_at(int tile, struct vec3 p) { return 0.3 + 0.05 * tile + 0.0
 
 static double light_at(int tile, struct vec3 p)
 {
-    return known_at(tile, p) * (in_patch(tile, p) ? 2 : 1) + room_lamp_at(&truth, p, normals[tile]);
+    const struct vec3 d = vec3_sub(truth.at, p);
+    const double round = truth.intensity * fmax(0, vec3_dot(d, normals[tile])) / pow(vec3_length(d), 3);
+    return known_at(tile, p) * (in_patch(tile, p) ? 2 : 1) +
+           (is_standing ? round : room_lamp_at(&truth, p, normals[tile]));
 }
 
 static void shade(const void *ctx, float rgb[3], int tile, int x, int y, struct vec3 p)
@@ -43,8 +47,9 @@ static int inside_of(const struct field_atlas *a, int tile)
     return k;
 }
 
-/* Fits, when all but the lamp is known. */
-static int fit(struct unseen_lamp lamps[MAX_UNSEEN], const struct bright_place *bright)
+/* Fits, when all but the lamp is known. standing, stands: of one that stands; NULL: it is not looked for. */
+static int fit_both(struct unseen_lamp lamps[MAX_UNSEEN], const struct bright_place *bright,
+                    struct unseen_lamp *standing, bool *stands)
 {
     struct field_atlas atlas = {0};
     struct atlas_squares squares = {0};
@@ -64,10 +69,16 @@ static int fit(struct unseen_lamp lamps[MAX_UNSEEN], const struct bright_place *
         for (int c = 0; c < 3; c++)
             light.known[i][c] = known_at(inside_of(&atlas, squares.list[i].tile), squares.list[i].at);
     assert_ok(unseen_fit(lamps, &count, &light, &err), err);
+    if (standing) assert_ok(unseen_fit_standing(standing, stands, &light, &err), err);
     free(light.known);
     atlas_squares_release(&squares);
     field_atlas_release(&atlas);
     return count;
+}
+
+static int fit(struct unseen_lamp lamps[MAX_UNSEEN], const struct bright_place *bright)
+{
+    return fit_both(lamps, bright, NULL, NULL);
 }
 
 static void set(double x, double y, double intensity, bool sunny, bool hidden)
@@ -133,6 +144,28 @@ static void no_lamp_is_put_where_photographs_show_the_ceiling(void **state)
     assert_int_equal(fit(lamps, NULL), 0);
 }
 
+static void a_lamp_on_a_stand_is_said_with_its_place(void **state)
+{
+    struct unseen_lamp lamps[MAX_UNSEEN], standing;
+    bool stands;
+    (void)state;
+    set(1.3, 2.9, 1, false, true);
+    truth.at.z = 1.3;
+    is_standing = true;
+    assert_int_equal(fit_both(lamps, NULL, &standing, &stands), 0);
+    assert_true(stands);
+    assert_true(vec3_length(vec3_sub(standing.place.at, truth.at)) < 0.6);
+    assert_true(fabs(log(standing.intensity[1])) < 0.4);
+    assert_true(standing.gain > 0.3 && standing.excess > 0.5);
+    is_standing = false;
+    set(1.7, 2.4, 4, false, false); /* a lamp below the ceiling explains all */
+    assert_int_equal(fit_both(lamps, NULL, &standing, &stands), 1);
+    assert_false(stands);
+    set(0, 0, 0, true, false); /* a patch of sun lies on one face */
+    assert_int_equal(fit_both(lamps, NULL, &standing, &stands), 0);
+    assert_false(stands);
+}
+
 static void the_same_lamp_for_any_number_of_threads(void **state)
 {
     struct unseen_lamp lamps[2][MAX_UNSEEN];
@@ -154,6 +187,7 @@ int main(void)
         cmocka_unit_test(a_bright_place_of_the_ceiling_gets_its_radiance),
         cmocka_unit_test(what_no_lamp_explains_is_no_lamp),
         cmocka_unit_test(no_lamp_is_put_where_photographs_show_the_ceiling),
+        cmocka_unit_test(a_lamp_on_a_stand_is_said_with_its_place),
         cmocka_unit_test(the_same_lamp_for_any_number_of_threads),
     };
     return cmocka_run_group_tests(tests, make_walls, release_room);
