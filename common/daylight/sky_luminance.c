@@ -15,8 +15,9 @@
  * [IESNA 2000]: with the sun at altitude h the sky gives A + B sin^C h klx on a horizontal surface, and the sun 127.5
  * exp(-c / sin h) klx, over the square of its distance, on one that faces it.
  *
- * What differs from the sources: brightness is at least 0.01, and clearness has no upper end, as in Radiance's
- * gendaymtx; B0 follows from the sun's distance; a sun below the horizon counts as on it for the sky's shape. */
+ * What differs from the sources: brightness is 0.01 to 0.6, as in Radiance's gendaylit, since beyond the measured
+ * skies the formulas give a needle around the sun, or negative light; dew points count up to 35 degrees; clearness
+ * has no upper end; B0 follows from the sun's distance; a sun below the horizon counts as on it for the sky's shape. */
 #include "common/daylight/sky_luminance.h"
 
 #include "common/math/numbers.h"
@@ -24,6 +25,8 @@
 enum { CLASSES = 8, SAMPLES = 4, SKY_PARTLY = 7 }; /* SAMPLES of a patch of Tregenza, in each direction */
 
 static const double SOLAR_IRRADIANCE = 1367, SOLAR_ILLUMINANCE = 127.5e3; /* W/m2, lx, outside of the air */
+static const double DARKEST = 0.01, BRIGHTEST = 0.6;                      /* what brightness counts */
+static const double WETTEST = 35;                                         /* degrees Celsius, of dew points */
 static const double clearness_from[CLASSES] = {1, 1.065, 1.23, 1.5, 1.95, 2.8, 4.5, 6.2};
 
 /* [Perez 1993, table 1]: x1 to x4 of a, b, c, d, e */
@@ -140,11 +143,12 @@ struct sky_luminance sky_from_weather(const struct sky_weather *w, const struct 
     if (!(w->diffuse_horizontal > 0)) return s;
     const double mass = 1 / (cos(zenith) + 0.15 * pow(93.885 - zenith_degrees, -1.253));
     const double outside = SOLAR_IRRADIANCE / (sun->distance * sun->distance);
-    const double brightness = fmax(w->diffuse_horizontal * mass / outside, 0.01);
+    const double brightness = clamp(w->diffuse_horizontal * mass / outside, DARKEST, BRIGHTEST);
     const double clearness = (1 + w->direct_normal / w->diffuse_horizontal + cubed) / (1 + cubed);
     int class = CLASSES - 1;
     while (class > 0 && clearness < clearness_from[class]) class --;
-    const double water = exp(0.07 * w->dew_point - 0.075), *d = sky_efficacy[class], *b = sun_efficacy[class];
+    const double water = exp(0.07 * fmin(w->dew_point, WETTEST) - 0.075), *d = sky_efficacy[class],
+                 *b = sun_efficacy[class];
     const double of_sky = d[0] + d[1] * water + d[2] * cos(zenith) + d[3] * log(brightness);
     const double of_sun = b[0] + b[1] * water + b[2] * exp(5.73 * zenith - 5) + b[3] * brightness;
     s.shape = shape_of(class, zenith, brightness);

@@ -132,6 +132,23 @@ static void a_clear_sun_is_as_worked_out_by_hand(void **state)
     assert_true(sky_luminance_at(&s, s.to_sun) > 5 * sky_luminance_at(&s, zenith));
 }
 
+/* A file may hold what no sky has: brightness counts up to 0.6. */
+static void impossible_weather_gives_finite_light(void **state)
+{
+    static const double diffuse[] = {1e-9, 0.5, 50, 1000, 9998};
+    (void)state;
+    for (int i = 0; i < 5; i++)
+        for (int direct = 0; direct <= 9000; direct += 3000)
+            for (int altitude = -1; altitude <= 90; altitude += 13) {
+                const struct sun_position sun = sun_at(altitude);
+                const struct sky_luminance s =
+                    sky_from_weather(&(struct sky_weather){direct, diffuse[i], direct ? -99 : 90}, &sun, 0, 0.2);
+                const double at_sun = sky_luminance_at(&s, sun.altitude < 0 ? vec3_make(1, 0, 0) : s.to_sun);
+                assert_true(s.diffuse >= 0 && s.sun >= 0 && isfinite(at_sun) && isfinite(s.ground));
+                assert_true(s.diffuse <= 250 * diffuse[i]);
+            }
+}
+
 static void night_is_black(void **state)
 {
     struct sky_patches patches;
@@ -189,6 +206,7 @@ int main(void)
         cmocka_unit_test(all_weather_skies_have_their_illuminance),
         cmocka_unit_test(the_cloudiest_class_is_as_worked_out_by_hand),
         cmocka_unit_test(a_clear_sun_is_as_worked_out_by_hand),
+        cmocka_unit_test(impossible_weather_gives_finite_light),
         cmocka_unit_test(night_is_black),
         cmocka_unit_test(patches_light_as_the_sky_does),
     };
