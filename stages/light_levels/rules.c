@@ -25,8 +25,10 @@ static void say_scripts(struct graph *g, const struct scene_facts *f)
         if (path) rule_takes(g, graph_text(g, "--%s", names[i]), path);
         rule_needs(g, graph_stamp(g, graph_text(g, "%s.txt", names[i]), path ? path : "none"));
     }
-    if (path_is_file(scale)) rule_takes(g, "--scale", scale);
-    rule_needs(g, graph_stamp(g, "lux_scale.txt", path_is_file(scale) ? scale : "none"));
+    /* photos need not say their exposure: without measurements the scale counts where `make luminance` has made it */
+    const bool scaled = graph_scene_file(g, "lux.txt") || path_is_file(scale);
+    if (scaled) rule_takes(g, "--scale", scale);
+    rule_needs(g, graph_stamp(g, "lux_scale.txt", scaled ? scale : "none"));
     rule_needs(g, graph_stamp(g, "weather.txt", scene_setting("WEATHER")));
     if (*scene_setting("WEATHER")) rule_variable(g, "--weather", "WEATHER");
 }

@@ -1,5 +1,5 @@
 # light_levels: how bright rooms and places are, by groups of light.
-FOLLOWS.light_levels := build_model find_things bake_vita bake_outdoors fit_lights update_vita
+FOLLOWS.light_levels := build_model find_things bake_vita bake_outdoors fit_lights update_vita calibrate_light
 READS.light_levels := both models, plan.txt, texture.txt and objects.txt, axes.txt, the VITA, the things, outdoors.exr, lights/lights.txt and the reference images that it names; lux/scale.txt; scenes/NAME/places.txt and states.txt, and WEATHER, if there are any
 VARIABLES.light_levels := WEATHER
 HELP.lux := + light levels of rooms and named places, of the room as it is and with EDIT=E after an edit: O/lux/sheet.tsv

@@ -5,7 +5,7 @@ photos set --size 128x96 >/dev/null
 boxed t textures
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[light_levels]\npatches = 300\nrays = 64\npoint_rays = 64\nspacing = 4\nmargin = 2\n' >>scenes/t/scene.cfg
-printf 'remodel-script 1\n# A dark floor.\npaint FLOOR 0.05 0.05 0.05\n' >scenes/t/edits/dark.txt
+printf 'remodel-script 1\n# A dark floor.\npaint floor/hall 0.05 0.05 0.05\n' >scenes/t/edits/dark.txt
 printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
 printf 'remodel-states 1\nsite 52.5 13.4 1\nstate noon lamps off sky clear 6 21 12\n' >scenes/t/states.txt
 m lux EDIT=dark
