@@ -5,10 +5,10 @@
  * solution of the photographed state is L itself.
  *
  * Bounds. A lamp that nobody marked, a screen, a highlight or a window's reflection gives a rho above 1. Beyond MOST in
- * a channel, or in the dark, where E is noise, the patch takes the median of its face (by luminance, of patches that are
- * known), and what is left of its radiance, L - rho E / pi, is the group `rest`: light of the photographs that nothing
- * else explains. Patches that no photograph shows take the face's median as well, without a rest. Furniture has one
- * radiance a side in the field, so one reflectance a piece: pi sum(A L) / sum(A E).
+ * a channel, or in the dark, where E is noise, the patch takes the median of its face (by luminance, of patches that
+ * are known), and what is left of its radiance, L - rho E / pi, is the group `rest`: light of the photographs that
+ * nothing else explains. Patches that no photograph shows take the face's median as well, without a rest. Furniture
+ * has one radiance a side in the field, so one reflectance a piece: pi sum(A L) / sum(A E).
  *
  * Edits. A place of an edited face has the texel of a place in the photographs (light_change.h), and reflects what the
  * patch there does, times the quotient of the texel's radiance and the patch's. */
@@ -49,7 +49,7 @@ static struct rgb bounded(struct rgb rho) { return rgb_make(fmin(rho.r, MOST), f
 
 static double left(double radiance, double rho, double e) { return fmax(0, radiance - rho * e / PI); }
 
-/* ------------------------------------------------------------------------------------------------------------- medians */
+/* ---------------------------------------------------------------------------------------------------------- medians */
 
 /* The median by channel of known patches from `begin` to `end`; false: there are none. */
 static bool median_of(struct rgb *median, const struct photographed_patch *found, const struct light_patches *p,
@@ -87,7 +87,7 @@ static void complete_face(struct photographed_patch *found, const struct light_p
     }
 }
 
-/* ----------------------------------------------------------------------------------------------------------- furniture */
+/* -------------------------------------------------------------------------------------------------------- furniture */
 
 /* Patches of one owner are contiguous. */
 static void complete_owner(struct photographed_patch *found, const struct light_patches *p, int begin, int end)
@@ -136,7 +136,7 @@ enum status colours_of_photographs(struct photographed_patch *found, const struc
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- edits */
+/* ------------------------------------------------------------------------------------------------------------ edits */
 
 static double quotient(double texel, double mean) { return mean > 0 ? texel / mean : 1; }
 

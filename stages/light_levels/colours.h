@@ -16,9 +16,9 @@ struct photographed_patch {
 enum status colours_of_photographs(struct photographed_patch *found, const struct light_patches *p,
                                    const struct light_rows *rows, const struct light_groups *g, struct err *err);
 
-/* The colours of an edit's patches, from those of the photographed model. `was` has the things of the photographs as its
- * further surfaces; an edit's are objects, whose owner is its place in the edit's list of objects, and things, OWNER_THING
- * + id. */
+/* The colours of an edit's patches, from those of the photographed model. `was` has the things of the photographs as
+ * its further surfaces; an edit's are objects, whose owner is its place in the edit's list of objects, and things,
+ * OWNER_THING + id. */
 enum { OWNER_THING = 1 << 20 };
 void colours_of_edit(struct patch_colour *found, const struct light_patches *p, const struct light_change *change,
                      const struct light_patches *was, const struct photographed_patch *photographed);

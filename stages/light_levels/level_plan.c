@@ -1,9 +1,9 @@
 /* level_plan.c - see level_plan.h.
  *
- * Each point of a work plane is a square of its spacing, coloured by the logarithm of its value between the least and the
- * most of all rooms (at most a factor of 1000 apart). Isolines are at 1, 2, 3 and 5 times powers of ten: in each square of
- * four points a level cuts the sides where it lies between their values, at the place of linear interpolation
- * [Lorensen 1987]. Every line has its level once a room. */
+ * Each point of a work plane is a square of its spacing, coloured by the logarithm of its value between the least
+ * and the most of all rooms (at most a factor of 1000 apart). Isolines are at 1, 2, 3 and 5 times powers of ten: in
+ * each square of four points a level cuts the sides where it lies between their values, at the place of linear
+ * interpolation. Every line has its level once a room. */
 #include "stages/light_levels/level_plan.h"
 
 #include <math.h>
@@ -60,7 +60,7 @@ static void put_square(const struct drawing *d, double x, double y, double side,
             d->sheet.scale * side, c[0], c[1], c[2]);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ isolines */
+/* --------------------------------------------------------------------------------------------------------- isolines */
 
 /* The points of an area by column and row; -1: none. */
 struct lattice {

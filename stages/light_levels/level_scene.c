@@ -10,7 +10,7 @@
 
 enum { KEY_PATCHES = 1 << 28, KEY_POINTS = 1 << 29 };
 
-/* ------------------------------------------------------------------------------------------------------------ reading */
+/* ---------------------------------------------------------------------------------------------------------- reading */
 
 static enum status read_alone(struct level_scene *s, const struct light_change_files *files, struct provenance *prov,
                               struct err *err)
@@ -49,7 +49,7 @@ const struct model_field *level_scene_field(const struct level_scene *s)
     return s->edited ? &s->change.after : &s->alone;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- patches */
+/* ---------------------------------------------------------------------------------------------------------- patches */
 
 static struct patch_owner old_owner(const void *ctx, int triangle)
 {
@@ -82,7 +82,7 @@ static int count_bounded(const struct photographed_patch *found, const struct li
     return bounded;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- making */
+/* ----------------------------------------------------------------------------------------------------------- making */
 
 static enum status colour_alone(struct level_light *l, struct err *err)
 {

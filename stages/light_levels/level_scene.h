@@ -39,8 +39,8 @@ enum status level_light_make(struct level_light *l, const struct level_scene *s,
                              struct err *err);
 void level_light_release(struct level_light *l);
 
-/* The irradiance at points from each group: (*found)[(point * groups + group) * 3 + channel]; what arrives directly alone
- * is in `direct`, which the caller releases, as it frees *found. */
+/* The irradiance at points from each group: (*found)[(point * groups + group) * 3 + channel]; what arrives directly
+ * alone is in `direct`, which the caller releases, as it frees *found. */
 enum status level_light_at(float **found, struct light_rows *direct, const struct level_light *l,
                            const struct gather_point *points, int count, const struct levels_params *params,
                            struct err *err);

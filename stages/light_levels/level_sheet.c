@@ -40,7 +40,7 @@ static bool begin_reading(struct reading *r, const struct levels_job *j, const s
     return true;
 }
 
-/* ------------------------------------------------------------------------------------------------------------- areas */
+/* ------------------------------------------------------------------------------------------------------------ areas */
 
 static enum status add_areas(struct levels_job *j, const struct reading *r, const double *values, struct err *err)
 {
@@ -84,7 +84,7 @@ static enum status draw(const struct levels_job *j, const struct reading *r, con
     return level_plan_write(&picture, &j->sensors, &j->plan, path, err);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ states */
+/* ----------------------------------------------------------------------------------------------------------- states */
 
 static enum status add_daylight_factor(struct levels_job *j, const struct reading *overcast, double *values,
                                        struct err *err)
@@ -121,7 +121,7 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
     return err->status;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- year */
+/* ------------------------------------------------------------------------------------------------------------- year */
 
 /* What is told of a year, of each point; the area's figure is the mean. */
 static const struct annual {

@@ -1,9 +1,9 @@
 /* level_sums.c - see level_sums.h.
  *
  * Skies. Each patch of the sky has its mean luminance, times what the glass lets through; patch by patch they add up to
- * the sky's illuminance (sky_luminance.h). The sun's direct light at a point is that of a ray in its own direction. What
- * it reflects comes from beams in the middles of patches: the three nearest, weighted by the inverse of their distance,
- * because what a room reflects changes slowly with the sun's place. */
+ * the sky's illuminance (sky_luminance.h). The sun's direct light at a point is that of a ray in its own direction.
+ * What it reflects comes from beams in the middles of patches: the three nearest, weighted by the inverse of their
+ * distance, because what a room reflects changes slowly with the sun's place. */
 #include "stages/light_levels/level_sums.h"
 
 #include <math.h>
@@ -15,7 +15,7 @@
 
 enum { NEAREST = 3 };
 
-/* ------------------------------------------------------------------------------------------------------------- weights */
+/* ---------------------------------------------------------------------------------------------------------- weights */
 
 enum status state_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err)
 {
@@ -71,22 +71,34 @@ void state_weights_add_sky(struct state_weights *w, const struct sky_luminance *
     if (w->sun > 0) add_beams(w, groups);
 }
 
-static enum status set_lamps(struct state_weights *w, const struct light_state *s, const struct state_list *states,
-                             const struct light_groups *g, struct err *err)
+static int find_lamp(const struct light_list *l, const char *name)
+{
+    for (int i = 0; i < l->lamp_count; i++)
+        if (!strcmp(l->lamps[i].name, name)) return i;
+    return -1;
+}
+
+enum status state_lamps_check(const struct state_list *states, const struct light_list *lights, struct err *err)
+{
+    for (int i = 0; i < states->count; i++)
+        for (int k = 0; k < states->items[i].named_count; k++)
+            if (find_lamp(lights, states->items[i].named[k].name) < 0)
+                return err_set(
+                    err, ST_DATA,
+                    "%s:%d: found the lamp %s, which the scene does not have; wanted one of lights/lights.txt.",
+                    states->path, states->items[i].line, states->items[i].named[k].name);
+    return ST_OK;
+}
+
+static void set_lamps(struct state_weights *w, const struct light_state *s, const struct light_groups *g)
 {
     const struct light_list *l = &g->field->lights;
     for (int i = 0; i < l->lamp_count; i++) w->relative[i] = s->lamps;
     w->relative[g->rest] = s->lamps;
     for (int k = 0; k < s->named_count; k++) {
-        int i = 0;
-        while (i < l->lamp_count && strcmp(l->lamps[i].name, s->named[k].name) != 0) i++;
-        if (i == l->lamp_count)
-            return err_set(err, ST_DATA,
-                           "%s:%d: found the lamp %s, which the scene does not have; wanted one of lights/lights.txt.",
-                           states->path, s->line, s->named[k].name);
-        w->relative[i] = s->named[k].factor;
+        const int lamp = find_lamp(l, s->named[k].name);
+        if (lamp >= 0) w->relative[lamp] = s->named[k].factor;
     }
-    return ST_OK;
 }
 
 enum status state_weights_make(struct state_weights *w, const struct light_state *state,
@@ -95,7 +107,8 @@ enum status state_weights_make(struct state_weights *w, const struct light_state
 {
     struct sun_position sun;
     struct sky_luminance sky;
-    if (state_weights_init(w, groups, err) || set_lamps(w, state, states, groups, err)) return err->status;
+    if (state_weights_init(w, groups, err)) return err->status;
+    set_lamps(w, state, groups);
     for (int v = 0; state->sky == STATE_SKY_PHOTOGRAPHED && v < groups->windows_count; v++)
         w->relative[groups->sky + v] = w->relative[groups->sun + v] = 1;
     if (state->sky == STATE_SKY_OVERCAST) {
@@ -110,7 +123,7 @@ enum status state_weights_make(struct state_weights *w, const struct light_state
     return ST_OK;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- points */
+/* ----------------------------------------------------------------------------------------------------------- points */
 
 enum status level_points_make(struct level_points *p, const struct level_light *l, const struct gather_point *points,
                               int count, const struct levels_params *params, struct err *err)
@@ -154,7 +167,7 @@ void level_points_sum(double to[2], const struct level_points *p, int point, con
         to[1] += w->sun * vec3_dot(p->points[point].normal, w->to_sun);
 }
 
-/* ------------------------------------------------------------------------------------------------------------- patches */
+/* ---------------------------------------------------------------------------------------------------------- patches */
 
 static void sum_groups(double to[2], const float *values, const struct state_weights *w, int groups)
 {

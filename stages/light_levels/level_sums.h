@@ -5,8 +5,8 @@
 #include "stages/light_levels/level_scene.h"
 #include "stages/light_levels/state_list.h"
 
-/* What each group is multiplied by, luminance by luminance: `relative` in the unit of the photographs, `absolute` in lx or
- * cd/m2. Owned. */
+/* What each group is multiplied by, luminance by luminance: `relative` in the unit of the photographs, `absolute` in
+ * lx or cd/m2. Owned. */
 struct state_weights {
     double *relative, *absolute;
     bool has_relative, has_absolute; /* some weight is not 0 */
@@ -14,7 +14,10 @@ struct state_weights {
     double sun; /* lx on a surface that faces it, within the panes; 0: none */
 };
 
-/* The caller releases w in each case. ST_DATA: a lamp that the scene does not have, with file and line. */
+/* ST_DATA: a state names a lamp that the scene does not have, with file and line. */
+enum status state_lamps_check(const struct state_list *states, const struct light_list *lights, struct err *err);
+
+/* The caller releases w in each case. ST_NOMEM. */
 enum status state_weights_make(struct state_weights *w, const struct light_state *state,
                                const struct state_list *states, const struct light_groups *groups,
                                const struct levels_params *params, struct err *err);
@@ -35,8 +38,8 @@ enum status level_points_make(struct level_points *p, const struct level_light *
                               int count, const struct levels_params *params, struct err *err);
 void level_points_release(struct level_points *p);
 
-/* A point's illuminance in a state: to[0] in the unit of the photographs, to[1] in lx. The sun's direct light comes from
- * a ray in its own direction; field NULL: it is left out. */
+/* A point's illuminance in a state: to[0] in the unit of the photographs, to[1] in lx. The sun's direct light comes
+ * from a ray in its own direction; field NULL: it is left out. */
 void level_points_sum(double to[2], const struct level_points *p, int point, const struct state_weights *w,
                       const struct model_field *field);
 

@@ -1,7 +1,8 @@
 /* level_year.c - see level_year.h.
  *
  * Each hour has the sky of its irradiances [Perez 1993] and the sun where it is in the middle of the hour. What the sky
- * and reflected sun bring is a sum over groups; the sun's direct light is a ray from the point. Blinds are not drawn. */
+ * and reflected sun bring is a sum over groups; the sun's direct light is a ray from the point. Blinds are not
+ * drawn. */
 #include "stages/light_levels/level_year.h"
 
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 /* levels.c - see levels.h.
  *
- * Overview. Surfaces are cut into patches (patches.c), light is divided into groups (groups.c), rays say what each patch
- * gets directly and from other patches (rows.c), the photographs say what it reflects (colours.c), and one solve passes
- * all groups on between patches (radiosity.c). Then rays from the points of rooms and places (sensors.c) give what each
- * group brings there. All that follows is sums (level_sums.c, level_sheet.c): states of lamps and sky, daylight
- * factors, hours of a year. */
+ * Overview. Surfaces are cut into patches (patches.c), light is divided into groups (groups.c), rays say what each
+ * patch gets directly and from other patches (rows.c), the photographs say what it reflects (colours.c), and one
+ * solve passes all groups on between patches (radiosity.c). Then rays from the points of rooms and places
+ * (sensors.c) give what each group brings there. All that follows is sums (level_sums.c, level_sheet.c): states of
+ * lamps and sky, daylight factors, hours of a year. */
 #include "stages/light_levels/levels.h"
 
 #include <stdio.h>
@@ -33,7 +33,7 @@ void levels_release(struct levels_job *j)
     provenance_release(&j->prov);
 }
 
-/* -------------------------------------------------------------------------------------------------------- given points */
+/* ----------------------------------------------------------------------------------------------------- given points */
 
 /* Irradiance of the photographed state at points in the frame of the scene: lines X Y Z NX NY NZ R G B on stdout. */
 static enum status print_points(struct levels_job *j, struct err *err)
@@ -70,7 +70,7 @@ static enum status print_points(struct levels_job *j, struct err *err)
     return err->status;
 }
 
-/* ----------------------------------------------------------------------------------------------------------------- all */
+/* -------------------------------------------------------------------------------------------------------------- all */
 
 static enum status read_inputs(struct levels_job *j, struct err *err)
 {
@@ -80,7 +80,8 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
     if (f->scale && lux_scale_read(&j->scale, f->scale, &j->prov, err)) return err->status;
     if (f->weather && weather_read(&j->weather, f->weather, &j->prov, err)) return err->status;
     if (state_list_read(&j->states, f->states, &j->prov, err) || model_plan_read(&j->plan, f->plan, &j->prov, err) ||
-        level_scene_read(&j->scene, &f->light, &j->prov, err))
+        level_scene_read(&j->scene, &f->light, &j->prov, err) ||
+        state_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err))
         return err->status;
     if (!j->scene.axes.metric)
         log_warn("the scene has no scale: distances of points and the height of the work plane are in its own unit. "

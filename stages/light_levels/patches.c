@@ -22,7 +22,7 @@
 enum { SAMPLES = 4, GLANCES = 64, OUTER_PLACES = 8 };
 static const double OUTSIDE = 0.9; /* of the rays of a face that looks outdoors leave the model */
 
-/* ----------------------------------------------------------------------------------------------------- a face's plane */
+/* --------------------------------------------------------------------------------------------------- a face's plane */
 
 /* Edges of a face as (x0, y0, x1, y1) in its own coordinates. */
 struct outline {
@@ -100,7 +100,7 @@ static struct vec3 some_place(const struct solid_mesh *m, int face)
     return vec3_scale(sum, 1.0 / 3);
 }
 
-/* ------------------------------------------------------------------------------------------------------- outer faces */
+/* ------------------------------------------------------------------------------------------------------ outer faces */
 
 /* The share of rays from a point that leave the model. */
 static double glance(const struct model_field *f, struct vec3 at, struct vec3 normal, int key)
@@ -176,7 +176,7 @@ static enum status choose_faces(bool *wanted, const struct model_field *f, struc
     return err->status;
 }
 
-/* ------------------------------------------------------------------------------------------------- patches of a face */
+/* ------------------------------------------------------------------------------------------------ patches of a face */
 
 static enum status add_patch(struct light_patches *p, struct light_patch patch, struct err *err)
 {
@@ -388,7 +388,7 @@ static enum status cut_surfaces(struct light_patches *p, patch_owner_fn *owner, 
     return err->status;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- all */
+/* -------------------------------------------------------------------------------------------------------------- all */
 
 static double surface_area(const struct model_field *f)
 {

@@ -46,8 +46,8 @@ struct patch_owner {
 };
 typedef struct patch_owner patch_owner_fn(const void *ctx, int triangle);
 
-/* Cuts the surfaces of a field into about `wanted` patches; faces that look outdoors have none. owner may be NULL if the
- * field has no further surfaces. The caller releases p in each case. ST_NOMEM. */
+/* Cuts the surfaces of a field into about `wanted` patches; faces that look outdoors have none. owner may be NULL if
+ * the field has no further surfaces. The caller releases p in each case. ST_NOMEM. */
 enum status patches_make(struct light_patches *p, const struct model_field *field, int wanted, patch_owner_fn *owner,
                          const void *ctx, struct err *err);
 void patches_release(struct light_patches *p);

@@ -5,8 +5,8 @@
 #include "common/model/model_plan.h"
 #include "stages/light_levels/level_scene.h"
 
-/* A line a face name: its area, and the part of light that it reflects. Faces that look outdoors are left out; of a pane
- * one side counts. */
+/* A line a face name: its area, and the part of light that it reflects. Faces that look outdoors are left out; of a
+ * pane one side counts. */
 enum status quantities_write(const struct level_light *light, const char *path, struct err *err);
 /* A line an opening of a wall, a ceiling or a floor. */
 enum status openings_write(const struct model_plan *plan, const char *path, struct err *err);

@@ -3,12 +3,14 @@
  * Mathematics. The irradiance of patch i from a group is E_i = D_i + pi sum_j F_ij B_j with D what arrives directly and
  * F the form factors; its radiance is B_i = R_i + rho_i / pi E_i, where R is not 0 in the group `rest` alone. The sums
  * are linear in D and R, so each group and channel is a system of its own with one matrix. Gauss-Seidel rounds use the
- * newest values; since the rows of F sum to 1 at most and rho is below 1, they converge, the slower the whiter the room.
+ * newest values; since the rows of F sum to 1 at most and rho is below 1, they converge, the slower the whiter the
+ * room.
  *
  * Groups are solved in blocks of BLOCK columns. A block's radiance stays in the cache, the inner loop is a vector of
  * BLOCK floats, and blocks are independent, so that bits do not depend on threads. Groups without light cost nothing.
  *
- * Source: radiosity by Gauss-Seidel [Cohen 1985]; daylight coefficients as columns of one solve [Tregenza 1983]. */
+ * Source: the radiosity system of [Cohen 1985]. Different here: form factors are counted rays, and all groups are
+ * columns of one solve. */
 #include "stages/light_levels/radiosity.h"
 
 #include <math.h>

@@ -2,9 +2,9 @@
  *
  * Overview. Rays by the cosine say which patches a place sees: each counts 1 / rays. Those that leave the model through
  * a window are left to rays that go to the window itself, spread evenly over the solid angle of its pane [Urena 2013];
- * those that leave it elsewhere count as they are. A ray to a window that leaves through it sees a patch of the sky, and
- * the photographed outdoors; one that meets a reveal or furniture counts nothing, because rays by the cosine see that.
- * So each direction belongs to one kind of ray, and no weights have to be shared.
+ * those that leave it elsewhere count as they are. A ray to a window that leaves through it sees a patch of the sky,
+ * and the photographed outdoors; one that meets a reveal or furniture counts nothing, because rays by the cosine see
+ * that. So each direction belongs to one kind of ray, and no weights have to be shared.
  *
  * A sun in the photographed outdoors is sought by rays within its cone; there the other rays leave it out. The sun of
  * other hours is a direction: a ray to it from each place.
@@ -92,7 +92,7 @@ static void see_sky(const struct source *s, int window, struct vec3 direction, d
         add_direct(s, groups_patch(g, window, sky_patch_at(&g->patches, direction)), rgb_grey(value));
 }
 
-/* ------------------------------------------------------------------------------------------------- rays by the cosine */
+/* ----------------------------------------------------------------------------------------------- rays by the cosine */
 
 static void add_share(const struct source *s, int patch, double share)
 {
@@ -140,7 +140,7 @@ static void trace_cosine(const struct source *s, int rays)
     if (p.count) trace_cosine_packet(s, &p);
 }
 
-/* ------------------------------------------------------------------------------------------------------ through panes */
+/* ---------------------------------------------------------------------------------------------------- through panes */
 
 static void trace_pane_packet(const struct source *s, const struct packet *p, int window)
 {
@@ -189,7 +189,7 @@ static void trace_panes(const struct source *s, int rays)
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------------- suns */
+/* ------------------------------------------------------------------------------------------------------------- suns */
 
 static void trace_suns(const struct source *s)
 {
@@ -255,7 +255,7 @@ bool rows_sees_sun(const struct model_field *f, struct gather_point p, struct ve
     return !ray_scene_blocked(&f->model.rays, from, to_sun, INFINITY);
 }
 
-/* -------------------------------------------------------------------------------------------------------------- lamps */
+/* ------------------------------------------------------------------------------------------------------------ lamps */
 
 /* What place (u, v) of a lamp sends to the point; *reach: where along *direction a surface begins to hide it. */
 static double lamp_sends(const struct source *s, const struct lamp *l, const double u[2], struct vec3 *direction,
@@ -307,7 +307,7 @@ static void light_by_lamps(const struct source *s, int rays)
     }
 }
 
-/* --------------------------------------------------------------------------------------------------------------- rows */
+/* ------------------------------------------------------------------------------------------------------------- rows */
 
 static int compare_ints(const void *a, const void *b)
 {

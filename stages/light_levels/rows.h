@@ -29,9 +29,9 @@ struct row_place {
     int count;
 };
 
-/* `rays` of each row go by the cosine, as many to the windows. Form factors of a row and `away` sum to 1. key: different
- * for rows that must not share random numbers. Same bits for any number of threads. The caller releases r in each case.
- * ST_NOMEM. */
+/* `rays` of each row go by the cosine, as many to the windows. Form factors of a row and `away` sum to 1. key:
+ * different for rows that must not share random numbers. Same bits for any number of threads. The caller releases r
+ * in each case. ST_NOMEM. */
 enum status rows_trace(struct light_rows *r, const struct light_groups *g, const struct light_patches *p,
                        const struct row_place *places, int count, int rays, uint64_t key, const char *what,
                        struct err *err);

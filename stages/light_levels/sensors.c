@@ -1,7 +1,7 @@
 /* sensors.c - see sensors.h.
  *
  * A room's points are a lattice of the spacing, centred in its outline's box, those kept that lie in the outline and
- * `margin` from its walls, as the method of the IES has it [LM-83]. A room too small for any has one in its middle.
+ * `margin` from its walls, as the method of the IES has it [IES 2012]. A room too small for any has one in its middle.
  * A place's rectangle is cut into cells no wider than half the spacing, with a point in the middle of each. */
 #include "stages/light_levels/sensors.h"
 
@@ -53,7 +53,7 @@ static enum status add_point(const struct spread *j, double x, double y, double 
     return ST_OK;
 }
 
-/* --------------------------------------------------------------------------------------------------------------- rooms */
+/* ------------------------------------------------------------------------------------------------------------ rooms */
 
 static double distance_to_side(const struct model_room_corner *a, const struct model_room_corner *b, double x, double y)
 {
@@ -130,7 +130,7 @@ static enum status add_room(const struct spread *j, int room, enum sensor_kind k
     return err->status;
 }
 
-/* -------------------------------------------------------------------------------------------------------------- places */
+/* ----------------------------------------------------------------------------------------------------------- places */
 
 static int room_at(const struct model_plan *plan, double x, double y)
 {

@@ -26,7 +26,7 @@ void state_list_release(struct state_list *l)
     *l = (struct state_list){0};
 }
 
-/* ---------------------------------------------------------------------------------------------------------- statements */
+/* ------------------------------------------------------------------------------------------------------- statements */
 
 static enum status read_site(struct state_list *l, struct textfile *t, struct err *err)
 {
@@ -157,7 +157,7 @@ static enum status read_line(struct state_list *l, struct textfile *t, struct er
     return strcmp(word, "state") != 0 ? textfile_error(t, err, word, "site or state") : read_state(l, t, err);
 }
 
-/* ---------------------------------------------------------------------------------------------------------------- list */
+/* ------------------------------------------------------------------------------------------------------------- list */
 
 static enum status add_usual(struct state_list *l, struct err *err)
 {
