@@ -97,8 +97,8 @@ const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 fro
 enum light_source model_field_outdoors(struct rgb *radiance, const struct model_field *f, struct vec3 from,
                                        struct vec3 direction);
 
-/* The rectangle around a pane of glass, a body of the mesh, as an emitter; its normal points indoors. False: the body is
- * no pane, or lets no daylight in: it has indoors on both sides, or on neither. */
+/* The rectangle around a pane of glass, a body of the mesh, as an emitter; its normal points indoors. False: the body
+ * is no pane, or lets no daylight in: it has indoors on both sides, or on neither. */
 bool model_field_pane(struct emitter *pane, const struct model_field *f, int body);
 
 /* Whether a point is behind a surface of the model, that is in a solid, with the surface no further than `most` ahead

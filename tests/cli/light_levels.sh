@@ -10,7 +10,7 @@ printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
 printf 'remodel-states 1\nsite 52.5 13.4 1\nstate noon lamps off sky clear 6 21 12\n' >scenes/t/states.txt
 m lux EDIT=dark
 O=out/t
-inputs=(--config scenes/t/scene.cfg --model $O/model/model.txt --plan $O/model/plan.txt --axes $O/model/axes.txt --vita $O/vita --outdoors $O/outdoors/outdoors.exr)
+inputs=(--config scenes/t/scene.cfg --model "$O/model/model.txt" --plan "$O/model/plan.txt" --axes "$O/model/axes.txt" --vita "$O/vita" --outdoors "$O/outdoors/outdoors.exr")
 
 # levels CODE WORD ARGUMENT...: runs light_levels; checks its exit status and a word on standard error
 levels()
