@@ -34,9 +34,9 @@ struct unseen_light {
  * MAX_UNSEEN together. Adds their light to l->known. ST_NOMEM. Same bits for any number of threads. */
 enum status unseen_fit(struct unseen_lamp *lamps, int *count, struct unseen_light *l, struct err *err);
 
-/* Looks for a lamp on a stand or a wall that shines evenly to all sides: its place, to a quarter of a room's height, and
- * its luminance in all three colours. Found only if it explains much of what l->known leaves; its light is then added
- * to l->known. l->may_be is not asked. ST_NOMEM. Same bits for any number of threads. */
+/* Looks for a lamp on a stand or a wall that shines evenly to all sides: its place, to a quarter of a room's height,
+ * and its luminance in all three colours. Found only if it explains much of what l->known leaves; its light is then
+ * added to l->known. l->may_be is not asked. ST_NOMEM. Same bits for any number of threads. */
 enum status unseen_fit_standing(struct unseen_lamp *lamp, bool *found, struct unseen_light *l, struct err *err);
 
 /* The irradiance at a point from a lamp there of intensity 1. */
