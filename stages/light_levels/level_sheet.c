@@ -101,7 +101,7 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
     const struct light_state *state = &j->states.items[number];
     struct state_weights w = {0};
     struct reading r;
-    if (!state_weights_make(&w, state, &j->states, &j->light.groups, &j->params, err)) {
+    if (!level_weights_make(&w, state, &j->states, &j->light.groups, &j->params, err)) {
         if (!begin_reading(&r, j, state, &w)) {
             log_warn(
                 "the state %s has lamps and a sky that was not photographed; their sum needs lux/scale.txt, and is "
@@ -117,7 +117,7 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
             if (!err->status && number == STATE_OVERCAST) add_daylight_factor(j, &r, values, err);
         }
     }
-    state_weights_release(&w);
+    level_weights_release(&w);
     return err->status;
 }
 

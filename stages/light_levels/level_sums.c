@@ -17,7 +17,7 @@ enum { NEAREST = 3 };
 
 /* ---------------------------------------------------------------------------------------------------------- weights */
 
-enum status state_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err)
+enum status level_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err)
 {
     const size_t count = (size_t)groups->count + 1;
     *w = (struct state_weights){.relative = calloc(count, sizeof *w->relative),
@@ -25,7 +25,7 @@ enum status state_weights_init(struct state_weights *w, const struct light_group
     return w->relative && w->absolute ? ST_OK : err_nomem(err, "groups of light", count * sizeof *w->relative);
 }
 
-void state_weights_release(struct state_weights *w)
+void level_weights_release(struct state_weights *w)
 {
     free(w->relative);
     free(w->absolute);
@@ -56,7 +56,7 @@ static void add_beams(struct state_weights *w, const struct light_groups *g)
             w->absolute[groups_beam(g, v, near[i])] += w->sun / (away[i] + 1e-6) / sum;
 }
 
-void state_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
+void level_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
                            const struct levels_params *params)
 {
     double luminance[144 + 2];
@@ -78,7 +78,7 @@ static int find_lamp(const struct light_list *l, const char *name)
     return -1;
 }
 
-enum status state_lamps_check(const struct state_list *states, const struct light_list *lights, struct err *err)
+enum status level_lamps_check(const struct state_list *states, const struct light_list *lights, struct err *err)
 {
     for (int i = 0; i < states->count; i++)
         for (int k = 0; k < states->items[i].named_count; k++)
@@ -101,23 +101,23 @@ static void set_lamps(struct state_weights *w, const struct light_state *s, cons
     }
 }
 
-enum status state_weights_make(struct state_weights *w, const struct light_state *state,
+enum status level_weights_make(struct state_weights *w, const struct light_state *state,
                                const struct state_list *states, const struct light_groups *groups,
                                const struct levels_params *params, struct err *err)
 {
     struct sun_position sun;
     struct sky_luminance sky;
-    if (state_weights_init(w, groups, err)) return err->status;
+    if (level_weights_init(w, groups, err)) return err->status;
     set_lamps(w, state, groups);
     for (int v = 0; state->sky == STATE_SKY_PHOTOGRAPHED && v < groups->windows_count; v++)
         w->relative[groups->sky + v] = w->relative[groups->sun + v] = 1;
     if (state->sky == STATE_SKY_OVERCAST) {
         sky = sky_of_type(SKY_TRADITIONAL, vec3_make(0, 0, 1), state->horizontal, 0, params->ground);
-        state_weights_add_sky(w, &sky, groups, params);
+        level_weights_add_sky(w, &sky, groups, params);
     } else if (state->sky == STATE_SKY_TIME) {
         sun_position_find(&sun, &states->site, &state->time);
         sky = sky_of_cover(state->cover, &sun, states->north, params->ground);
-        state_weights_add_sky(w, &sky, groups, params);
+        level_weights_add_sky(w, &sky, groups, params);
     }
     for (int i = 0; i < groups->count; i++) w->has_relative |= w->relative[i] > 0;
     return ST_OK;

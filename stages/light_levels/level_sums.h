@@ -15,17 +15,17 @@ struct state_weights {
 };
 
 /* ST_DATA: a state names a lamp that the scene does not have, with file and line. */
-enum status state_lamps_check(const struct state_list *states, const struct light_list *lights, struct err *err);
+enum status level_lamps_check(const struct state_list *states, const struct light_list *lights, struct err *err);
 
 /* The caller releases w in each case. ST_NOMEM. */
-enum status state_weights_make(struct state_weights *w, const struct light_state *state,
+enum status level_weights_make(struct state_weights *w, const struct light_state *state,
                                const struct state_list *states, const struct light_groups *groups,
                                const struct levels_params *params, struct err *err);
 /* The same of a sky and its sun alone. */
-void state_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
+void level_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
                            const struct levels_params *params);
-enum status state_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err);
-void state_weights_release(struct state_weights *w);
+enum status level_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err);
+void level_weights_release(struct state_weights *w);
 
 /* Illuminance at points, by group: luminances of what level_light_at() found. Everything is owned. */
 struct level_points {

@@ -54,7 +54,7 @@ enum status level_year_count(struct daylight_point *counts, int *hours, const st
     *hours = 0;
     memset(counts, 0, (size_t)points->count * sizeof *counts);
     index_hours(of_hour, weather);
-    state_weights_init(&w, &light->groups, err);
+    level_weights_init(&w, &light->groups, err);
     for (int k = 0; !err->status && k < DAYLIGHT_HOURS; k++) {
         const struct daylight_hour hour = daylight_hour(k);
         const int record = of_hour[(sun_day_of_year(hour.month, hour.day) - 1) * DAY + (int)hour.middle];
@@ -64,11 +64,11 @@ enum status level_year_count(struct daylight_point *counts, int *hours, const st
         memset(w.absolute, 0, size);
         sun_position_find(&sun, &weather->at, &weather->hours[record].middle);
         const struct sky_luminance sky = sky_from_weather(&weather->hours[record].sky, &sun, north, params->ground);
-        state_weights_add_sky(&w, &sky, &light->groups, params);
+        level_weights_add_sky(&w, &sky, &light->groups, params);
         parallel_for((size_t)points->count, 16, count_some, &j);
         ++*hours;
     }
-    state_weights_release(&w);
+    level_weights_release(&w);
     if (!err->status && !*hours)
         err_set(err, ST_DATA, "the weather file has no hour from %d to %d o'clock; give one of a whole year.",
                 DAYLIGHT_FROM, DAYLIGHT_TO);

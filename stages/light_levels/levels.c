@@ -81,7 +81,7 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
     if (f->weather && weather_read(&j->weather, f->weather, &j->prov, err)) return err->status;
     if (state_list_read(&j->states, f->states, &j->prov, err) || model_plan_read(&j->plan, f->plan, &j->prov, err) ||
         level_scene_read(&j->scene, &f->light, &j->prov, err) ||
-        state_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err))
+        level_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err))
         return err->status;
     if (!j->scene.axes.metric)
         log_warn("the scene has no scale: distances of points and the height of the work plane are in its own unit. "
@@ -98,7 +98,7 @@ static enum status write_others(struct levels_job *j, struct err *err)
         product_path_in(path, j->out, PRODUCT_QUANTITIES, &key, err) || quantities_write(&j->light, path, err) ||
         product_path_in(path, j->out, PRODUCT_OPENING_SCHEDULE, &key, err))
         return err->status;
-    return openings_write(&j->plan, path, err);
+    return quantities_write_openings(&j->plan, path, err);
 }
 
 enum status levels_run(struct levels_job *j, struct err *err)

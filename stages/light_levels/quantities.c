@@ -97,7 +97,7 @@ static void put_slot(FILE *to, const struct model_plan *plan, const struct model
     fprintf(to, ",%.3f,%.3f,,%.3f,%s\n", width, depth, width * depth, s->closed ? "closed" : "open");
 }
 
-enum status openings_write(const struct model_plan *plan, const char *path, struct err *err)
+enum status quantities_write_openings(const struct model_plan *plan, const char *path, struct err *err)
 {
     struct outfile f = {0};
     if (outfile_open(&f, path, err)) return err->status;

@@ -9,6 +9,6 @@
  * pane one side counts. */
 enum status quantities_write(const struct level_light *light, const char *path, struct err *err);
 /* A line an opening of a wall, a ceiling or a floor. */
-enum status openings_write(const struct model_plan *plan, const char *path, struct err *err);
+enum status quantities_write_openings(const struct model_plan *plan, const char *path, struct err *err);
 
 #endif

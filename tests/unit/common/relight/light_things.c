@@ -88,7 +88,7 @@ static struct texture_thing edit_of(enum texture_thing_kind kind, const char *na
 static enum status try_read(struct light_things *t, const char *folder, const struct texture_map *map,
                             const char *after, struct err *err)
 {
-    return light_things_read(t, folder, map, scratch_path("room.txt"), scratch_path(after), NULL, err);
+    return light_things_read(t, folder, map, false, scratch_path("room.txt"), scratch_path(after), NULL, err);
 }
 
 static struct light_things read_map(const struct texture_map *map)
