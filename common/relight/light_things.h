@@ -29,7 +29,7 @@ struct light_things {
 };
 
 /* folder: of the things; NULL: none. before, after: model.txt of both models. always: read them also if the edit
- * changes none. What hangs from the ceiling is left out: lamps do, which have lights of their own. Each side of a
+ * changes none. What hangs from the ceiling is left out, as lamps do, which have lights of their own. Each side of a
  * thing has one radiance, the mean of its pixels. The caller releases t in each case. */
 enum status light_things_read(struct light_things *t, const char *folder, const struct texture_map *map, bool always,
                               const char *before, const char *after, struct provenance *prov, struct err *err);
