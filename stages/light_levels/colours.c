@@ -7,8 +7,9 @@
  * Bounds. A lamp that nobody marked, a screen, a highlight or a window's reflection gives a rho above 1. Beyond MOST in
  * a channel, or in the dark, where E is noise, the patch takes the median of its face (by luminance, of patches that
  * are known), and what is left of its radiance, L - rho E / pi, is the group `rest`: light of the photographs that
- * nothing else explains. Patches that no photograph shows take the face's median as well, without a rest. Furniture
- * has one radiance a side in the field, so one reflectance a piece: pi sum(A L) / sum(A E).
+ * nothing else explains. Patches that no photograph shows take the face's median as well, without a rest; where none
+ * shows anything of a face, its synthesised texture counts as if one did. Furniture has one radiance a side in the
+ * field, so one reflectance a piece: pi sum(A L) / sum(A E).
  *
  * Edits. A place of an edited face has the texel of a place in the photographs (light_change.h), and reflects what the
  * patch there does, times the quotient of the texel's radiance and the patch's. */
@@ -70,15 +71,29 @@ static bool median_of(struct rgb *median, const struct photographed_patch *found
     return true;
 }
 
-/* Patches of a face take its median where they are unknown. */
+/* The texture is synthesised, and all that is known of the light there. */
+static void trust_texture(struct photographed_patch *f, struct rgb l)
+{
+    const struct rgb rho = bounded(reflectance_of(l, f->before));
+    f->colour.reflectance = rho;
+    f->colour.rest =
+        rgb_make(left(l.r, rho.r, f->before.r), left(l.g, rho.g, f->before.g), left(l.b, rho.b, f->before.b));
+}
+
+/* Patches of a face take its median where they are unknown; of a face that no photograph shows, what its texture says.
+ */
 static void complete_face(struct photographed_patch *found, const struct light_patches *p, int begin, int end,
-                          struct rgb whole, struct weighted *room)
+                          struct rgb whole, double dark, struct weighted *room)
 {
     struct rgb median = whole;
-    median_of(&median, found, p, begin, end, room);
+    const bool is_shown = median_of(&median, found, p, begin, end, room);
     for (int i = begin; i < end; i++) {
         struct photographed_patch *f = &found[i];
         if (f->known) continue;
+        if (!is_shown && rgb_luminance(f->before) > dark) {
+            trust_texture(f, p->list[i].radiance);
+            continue;
+        }
         const struct rgb l = p->list[i].radiance;
         f->colour.reflectance = median;
         if (p->list[i].photographed >= 0.5)
@@ -129,7 +144,7 @@ enum status colours_of_photographs(struct photographed_patch *found, const struc
     median_of(&whole, found, p, 0, p->face_patches, room);
     for (int i = 0, next; i < p->face_patches; i = next) {
         for (next = i + 1; next < p->face_patches && p->list[next].face == p->list[i].face;) next++;
-        complete_face(found, p, i, next, whole, room);
+        complete_face(found, p, i, next, whole, DARK * sum / area, room);
     }
     complete_owners(found, p);
     free(room);
