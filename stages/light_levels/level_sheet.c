@@ -7,6 +7,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/log.h"
 #include "common/product/product.h"
@@ -52,6 +53,19 @@ static enum status add_areas(struct levels_job *j, const struct reading *r, cons
     return err->status;
 }
 
+static const char *face_of_patch(const struct light_patches *p, int patch)
+{
+    return solid_face_name(&p->field->model.mesh, p->list[patch].face);
+}
+
+static bool is_named_before(const struct light_patches *p, int patch, const char *name)
+{
+    for (int i = 0; i < patch; i++)
+        if (!strcmp(face_of_patch(p, i), name)) return true;
+    return false;
+}
+
+/* Faces of one name, such as a wall's in two rooms, are one row. */
 static enum status add_faces(struct levels_job *j, const struct reading *r, const struct state_weights *w,
                              struct err *err)
 {
@@ -60,14 +74,17 @@ static enum status add_faces(struct levels_job *j, const struct reading *r, cons
     double *values = malloc(2 * ((size_t)p->count + 1) * sizeof *values), *areas = values ? values + p->count : NULL;
     if (!sums || !values) err_nomem(err, "patches", (size_t)p->count * sizeof *sums);
     if (!err->status) level_patches_sum(sums, &j->light, w, err);
-    for (int i = 0, next; !err->status && i < p->face_patches; i = next) {
-        for (next = i; next < p->face_patches && p->list[next].face == p->list[i].face; next++) {
-            values[next - i] = r->factors[0] * sums[next][0] + r->factors[1] * sums[next][1];
-            areas[next - i] = p->list[next].area;
+    for (int i = 0; !err->status && i < p->face_patches; i++) {
+        const char *name = face_of_patch(p, i);
+        int count = 0;
+        if ((i > 0 && p->list[i].face == p->list[i - 1].face) || is_named_before(p, i, name)) continue;
+        for (int k = i; k < p->face_patches; k++) {
+            if (strcmp(face_of_patch(p, k), name) != 0) continue;
+            values[count] = r->factors[0] * sums[k][0] + r->factors[1] * sums[k][1];
+            areas[count++] = p->list[k].area;
         }
-        const struct sheet_values of = {values, areas, next - i, r->low, r->high};
-        sheet_add(&j->sheet, r->name, "face", solid_face_name(&p->field->model.mesh, p->list[i].face), r->unit, &of,
-                  err);
+        const struct sheet_values of = {values, areas, count, r->low, r->high};
+        sheet_add(&j->sheet, r->name, "face", name, r->unit, &of, err);
     }
     free(sums);
     free(values);

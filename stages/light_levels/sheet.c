@@ -64,9 +64,9 @@ enum status sheet_add(struct light_sheet *s, const char *state, const char *kind
 
 /* ------------------------------------------------------------------------------------------------------------ file */
 
-enum { COLUMNS = 9 };
-static const char *const names[COLUMNS] = {"state", "kind", "place",      "points", "mean",
-                                           "least", "most", "uniformity", "unit"};
+enum { COLUMNS = 11 };
+static const char *const names[COLUMNS] = {"state", "kind",  "place", "points",     "mean", "low",
+                                           "high",  "least", "most",  "uniformity", "unit"};
 
 static const struct sheet_row *find_row(const struct light_sheet *s, const struct sheet_row *like)
 {

@@ -33,6 +33,9 @@ make_lux_has_a_sheet_of_the_room_and_of_the_edit()
         "$B/bin/verify" --file "$f" || fail "$f is not whole"
     done
     ! grep -qE 'nan|inf' "$s" "$e" || fail "a number is none"
+    for f in "$s" "$e"; do
+        awk -F '\t' '/^#/ { next } !n { n = NF; next } NF != n || seen[$1 $2 $3]++ { print; bad = 1 } END { exit bad }' "$f" || fail "$f has a row twice, or of another length than its head"
+    done
     [ -n "$(cell "$s" photographed place desk 5)" ] || { cat "$s"; fail "the desk has no light"; }
     [ "$(cell "$s" noon place desk 11)" = lx ] && [ "$(cell "$s" photographed place desk 11)" = relative ] || fail "units are wrong"
     # a dark floor takes light away: the last column is the mean minus that before
