@@ -115,7 +115,7 @@ static void a_lamp_is_found_within_fifteen_centimetres_and_five_percent(void **s
 
 static void a_bright_place_of_the_ceiling_gets_its_radiance(void **state)
 {
-    const struct bright_place place = {{1.7, 2.4, 2.7}, 0.1, 0.1};
+    const struct bright_place place = {.at = {1.7, 2.4, 2.7}, .x = 0.1, .y = 0.1};
     struct unseen_lamp lamps[MAX_UNSEEN];
     (void)state;
     set(1.7, 2.4, 1, true, true);
@@ -126,7 +126,7 @@ static void a_bright_place_of_the_ceiling_gets_its_radiance(void **state)
 
 static void what_no_lamp_explains_is_no_lamp(void **state)
 {
-    const struct bright_place place = {{1.7, 2.4, 2.7}, 0.1, 0.1};
+    const struct bright_place place = {.at = {1.7, 2.4, 2.7}, .x = 0.1, .y = 0.1};
     struct unseen_lamp lamps[MAX_UNSEEN];
     (void)state;
     set(0, 0, 0, false, false);
