@@ -98,7 +98,7 @@ enum light_source model_field_outdoors(struct rgb *radiance, const struct model_
                                        struct vec3 direction);
 
 /* The rectangle around a pane of glass, a body of the mesh, as an emitter; its normal points indoors. False: the body
- * is no pane, or lets no daylight in: it has indoors on both sides, or on neither. */
+ * is something else, or daylight does not pass it, because both of its sides or neither are indoors. */
 bool model_field_pane(struct emitter *pane, const struct model_field *f, int body);
 
 /* Whether a point is behind a surface of the model, that is in a solid, with the surface no further than `most` ahead

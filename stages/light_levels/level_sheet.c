@@ -140,7 +140,7 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
 
 /* ------------------------------------------------------------------------------------------------------------- year */
 
-/* What is told of a year, of each point; the area's figure is the mean. */
+/* The figures of a year. Each point has one, and an area has the mean of its points. */
 static const struct annual {
     const char *name, *unit;
 } annual[] = {{"year-sda", "%"},

@@ -1,7 +1,7 @@
 /* sheet.c - see sheet.h.
  *
- * A tab separates columns; the first line that is no comment names them. Uniformity is the least of a mean. Before and
- * after an edit, rows belong together that have the same state, kind, place and unit. */
+ * Tabs separate columns, and the first line after the comments names them. Uniformity is the least value over the mean.
+ * A row of an edit is compared with the row of the unedited room that has the same state, kind, place and unit. */
 #include "stages/light_levels/sheet.h"
 
 #include <math.h>
