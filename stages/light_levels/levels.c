@@ -95,10 +95,11 @@ static enum status write_others(struct levels_job *j, struct err *err)
     const struct product_key key = {0};
     char path[FILE_PATH];
     if (level_file_write(&j->levels, &j->sensors, &j->light.groups, j->out, &j->prov, err) ||
-        product_path_in(path, j->out, PRODUCT_QUANTITIES, &key, err) || quantities_write(&j->light, path, err) ||
+        product_path_in(path, j->out, PRODUCT_QUANTITIES, &key, err) ||
+        quantities_write(&j->light, j->scene.axes.metric, path, err) ||
         product_path_in(path, j->out, PRODUCT_OPENING_SCHEDULE, &key, err))
         return err->status;
-    return quantities_write_openings(&j->plan, path, err);
+    return quantities_write_openings(&j->plan, j->scene.axes.metric, path, err);
 }
 
 enum status levels_run(struct levels_job *j, struct err *err)

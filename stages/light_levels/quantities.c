@@ -1,4 +1,4 @@
-/* quantities.c - see quantities.h. Areas are in square metres if the scene has a scale, as lengths are in metres. */
+/* quantities.c - see quantities.h. */
 #include "stages/light_levels/quantities.h"
 
 #include <math.h>
@@ -54,7 +54,7 @@ static void put_faces(FILE *to, const struct level_light *l, const struct face_s
     }
 }
 
-enum status quantities_write(const struct level_light *light, const char *path, struct err *err)
+enum status quantities_write(const struct level_light *light, bool metric, const char *path, struct err *err)
 {
     const struct light_patches *p = &light->patches;
     const struct solid_mesh *m = &p->field->model.mesh;
@@ -68,7 +68,7 @@ enum status quantities_write(const struct level_light *light, const char *path, 
     }
     if (!outfile_open(&f, path, err)) {
         const locale_t was = uselocale(scan_c_locale());
-        fputs("face,kind,area_m2,reflectance\n", f.fp);
+        fprintf(f.fp, "face,kind,area%s,reflectance\n", metric ? "_m2" : "");
         put_faces(f.fp, light, sums);
         uselocale(was);
         outfile_commit(&f, err);
@@ -97,12 +97,14 @@ static void put_slot(FILE *to, const struct model_plan *plan, const struct model
     fprintf(to, ",%.3f,%.3f,,%.3f,%s\n", width, depth, width * depth, s->closed ? "closed" : "open");
 }
 
-enum status quantities_write_openings(const struct model_plan *plan, const char *path, struct err *err)
+enum status quantities_write_openings(const struct model_plan *plan, bool metric, const char *path, struct err *err)
 {
     struct outfile f = {0};
     if (outfile_open(&f, path, err)) return err->status;
     const locale_t was = uselocale(scan_c_locale());
-    fputs("name,kind,of,width_m,height_m,sill_m,area_m2,state\n", f.fp);
+    fputs(metric ? "name,kind,of,width_m,height_m,sill_m,area_m2,state\n"
+                 : "name,kind,of,width,height,sill,area,state\n",
+          f.fp);
     for (int i = 0; i < plan->opening_count; i++) put_opening(f.fp, plan, &plan->openings[i]);
     for (int i = 0; i < plan->slot_count; i++) put_slot(f.fp, plan, &plan->slots[i]);
     uselocale(was);

@@ -32,6 +32,8 @@ make_lux_has_a_sheet_of_the_room_and_of_the_edit()
     for f in "$s" "$e" $O/lux/levels.txt $O/lux/levels.exr $O/lux/noon.svg $O/lux/quantities.csv $O/lux/openings.csv; do
         "$B/bin/verify" --file "$f" || fail "$f is not whole"
     done
+    grep -qx 'face,kind,area,reflectance' $O/lux/quantities.csv && grep -qx 'name,kind,of,width,height,sill,area,state' $O/lux/openings.csv ||
+        fail "a room without a scale has metres"
     ! grep -qE 'nan|inf' "$s" "$e" || fail "a number is none"
     for f in "$s" "$e"; do
         awk -F '\t' '/^#/ { next } !n { n = NF; next } NF != n || seen[$1 $2 $3]++ { print; bad = 1 } END { exit bad }' "$f" || fail "$f has a row twice, or of another length than its head"
