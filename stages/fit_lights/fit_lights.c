@@ -156,7 +156,7 @@ static enum status find_unseen(struct job *j, struct err *err)
                              err);
 }
 
-/* Fits the lamps roughly and looks for lamps that nobody marked; then fits the lamps in the light of these, too. */
+/* Fits the lamps roughly, looks for lamps that nobody marked, and adds the light of those that it finds. */
 static enum status find_before(struct job *j, const struct solve_inputs *in, struct err *err)
 {
     struct light_list *lights = &j->scene.lights;
