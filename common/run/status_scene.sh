@@ -56,6 +56,7 @@ say_failed()
 say_run "$scene"
 # a run at work has printed the graph, and goes on printing it
 if is_at_work; then
+    goal=${REMODEL_TO:-$(recorded goal)}
     [ ! -e "$O/graph/all.mk" ] || print_status
     exit 0
 fi

@@ -263,6 +263,8 @@ a_second_run_at_the_same_time_is_refused()
     # a run that has made two of five pieces of its second step, each in ten seconds
     (S=out/t O=out/t jobs=local; . common/run/run_record.sh; record_run depth; record_step 2 3 segment_depth depth; begin_tally 5)
     printf '%s 5\na\nb\n' "$(($(date +%s) - 20))" >out/t/log/run.tally
+    run_scene status >log 8>&-
+    awk '$1 == "segment_depth" && $2 + $3 == 12 { seen = 1 } /No rule/ { bad = 1 } END { exit !seen || bad }' log || { cat log; fail "status of the goal of a run at work"; }
     make -s DEPS=manual status >log 2>&1 8>&-
     grep -qE '^t: at work towards depth since .*, in out/t, in step 2 of 3 \(depth\), 2 of 5 pieces, about (2[89]|3[0-3]) s left of the step$' log || { cat log; fail "status of a run at work"; }
     exec 8>&-
