@@ -28,6 +28,7 @@
 
 #include "common/base/parallel.h"
 #include "common/light/ceiling_places.h"
+#include "common/light/point_lamp.h"
 #include "common/math/numbers.h"
 #include "common/math/weighted.h"
 #include "stages/bake_outdoors/sun_fit.h"
@@ -48,14 +49,10 @@ void sun_lamps_release(struct sun_lamps *l)
 }
 
 /* What a lamp of intensity 1 gives. */
-static double form_factor(const struct model_rays *model, struct vec3 lamp, struct vec3 at, struct vec3 normal)
+static double lamp_factor(const struct model_rays *model, struct vec3 lamp, struct vec3 at, struct vec3 normal)
 {
-    const struct vec3 d = vec3_sub(lamp, at);
-    const double r = vec3_length(d), nearest = NEAREST * model_rays_height(model);
-    if (r < nearest || d.z <= 0 || vec3_dot(d, normal) <= 0) return 0;
-    const struct vec3 from = vec3_add(at, vec3_scale(normal, 4 * model->rays.epsilon));
-    if (ray_scene_blocked(&model->rays, from, d, 1)) return 0;
-    return vec3_dot(d, normal) / r * (d.z / r) / (r * r);
+    if (vec3_length(vec3_sub(lamp, at)) < NEAREST * model_rays_height(model)) return 0;
+    return point_lamp_factor(model, POINT_LAMP_DOWNWARDS, lamp, at, normal);
 }
 
 struct rgb sun_lamps_irradiance(const struct sun_lamps *l, const struct model_rays *model, struct vec3 at,
@@ -65,7 +62,7 @@ struct rgb sun_lamps_irradiance(const struct sun_lamps *l, const struct model_ra
     for (int j = 0; j < l->count; j++) {
         const double *a = l->intensity[j];
         if (!(a[0] > 0 || a[1] > 0 || a[2] > 0)) continue;
-        const double factor = form_factor(model, l->at[j], at, normal);
+        const double factor = lamp_factor(model, l->at[j], at, normal);
         for (int c = 0; c < 3; c++) sum[c] += factor * a[c];
     }
     return rgb_make(sum[0], sum[1], sum[2]);
@@ -107,7 +104,7 @@ static void fill_range(void *ctx, size_t begin, size_t end, int thread)
         r->known[i][0] = e.value.r, r->known[i][1] = e.value.g, r->known[i][2] = e.value.b;
         for (int j = 0; j < r->lamps->count; j++)
             r->factors[i * (size_t)r->lamps->count + (size_t)j] =
-                (float)form_factor(r->in->scene->model, r->lamps->at[j], t->at, t->normal);
+                (float)lamp_factor(r->in->scene->model, r->lamps->at[j], t->at, t->normal);
     }
 }
 

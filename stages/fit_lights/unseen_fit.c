@@ -29,6 +29,7 @@
 #include "common/base/parallel.h"
 #include "common/light/ceiling_places.h"
 #include "common/light/colour.h"
+#include "common/light/point_lamp.h"
 #include "common/math/weighted.h"
 
 enum {
@@ -52,26 +53,16 @@ static const double LEAST = 0.2;         /* share of the loss that a lamp must e
 static const double BLOCK = 0.3;         /* of the model's height: the side of a block */
 static const double FINEST = 16;         /* steps of the place end at the spacing over this */
 
-static double part_factor(const struct model_rays *rays, struct vec3 lamp, bool is_round, struct vec3 at,
+double unseen_lamp_factor(const struct model_rays *rays, const struct bright_place *lamp, struct vec3 at,
                           struct vec3 normal)
 {
-    const struct vec3 d = vec3_sub(lamp, at);
-    const double r2 = vec3_dot(d, d), down = is_round ? sqrt(r2) : d.z;
-    if (down <= 0 || vec3_dot(d, normal) <= 0) return 0;
-    const struct vec3 from = vec3_add(at, vec3_scale(normal, 4 * rays->rays.epsilon));
-    if (ray_scene_blocked(&rays->rays, from, vec3_sub(lamp, from), 1)) return 0;
-    return vec3_dot(d, normal) * down / (r2 * r2);
-}
-
-double unseen_form_factor(const struct model_rays *rays, const struct bright_place *lamp, struct vec3 at,
-                          struct vec3 normal)
-{
+    const enum point_lamp_kind kind = lamp->is_round ? POINT_LAMP_ROUND : POINT_LAMP_DOWNWARDS;
     const int side = lamp->x > 0 ? PARTS : 1;
     double sum = 0;
     for (int k = 0; k < side * side; k++) {
         const double x = (2 * (k % side) + 1.0) / side - 1, y = (2 * (k / side) + 1.0) / side - 1;
         const struct vec3 part = vec3_add(lamp->at, vec3_make(x * lamp->x, y * lamp->y, 0));
-        sum += part_factor(rays, part, lamp->is_round, at, normal);
+        sum += point_lamp_factor(rays, kind, part, at, normal);
     }
     return sum / (side * side);
 }
@@ -107,7 +98,7 @@ static void find_factors(struct trial *t)
     for (int i = 0; i < l->squares->count; i++) {
         const struct atlas_square *s = &l->squares->list[i];
         const bool near = vec3_length(vec3_sub(t->at.at, s->at)) < nearest + fmax(t->at.x, t->at.y);
-        t->factors[i] = near ? -1 : unseen_form_factor(l->shadows, &t->at, s->at, s->normal);
+        t->factors[i] = near ? -1 : unseen_lamp_factor(l->shadows, &t->at, s->at, s->normal);
     }
 }
 

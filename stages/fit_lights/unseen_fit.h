@@ -40,7 +40,7 @@ enum status unseen_fit(struct unseen_lamp *lamps, int *count, struct unseen_ligh
 enum status unseen_fit_standing(struct unseen_lamp *lamp, bool *found, struct unseen_light *l, struct err *err);
 
 /* The irradiance at a point from a lamp there of intensity 1. */
-double unseen_form_factor(const struct model_rays *rays, const struct bright_place *lamp, struct vec3 at,
+double unseen_lamp_factor(const struct model_rays *rays, const struct bright_place *lamp, struct vec3 at,
                           struct vec3 normal);
 
 #endif

@@ -191,7 +191,7 @@ void unseen_lamps_light(const struct unseen_lamps *u, double (*indirect)[3], con
     for (int k = 0; k < u->count; k++)
         for (int i = 0; i < scene->point_count; i++) {
             const struct lit_point *p = &scene->points[i];
-            const double factor = unseen_form_factor(furnished, &u->lamps[k].place, p->at, p->normal);
+            const double factor = unseen_lamp_factor(furnished, &u->lamps[k].place, p->at, p->normal);
             for (int c = 0; c < 3; c++) indirect[i][c] += factor * u->lamps[k].intensity[c];
         }
 }
