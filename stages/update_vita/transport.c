@@ -45,11 +45,17 @@ static void set_place(struct transport_sample *s, const struct light_change *c, 
     if (count) s->place.colour = rgb_scale(sum, 1.0 / count);
 }
 
+struct place_job {
+    struct transport *t;
+    int first;
+};
+
 static void set_places(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct transport *t = ctx;
+    const struct place_job *j = ctx;
+    struct transport *t = j->t;
     (void)thread;
-    for (size_t i = begin; i < end; i++) {
+    for (size_t i = (size_t)j->first + begin; i < (size_t)j->first + end; i++) {
         const struct net_sample *s = &t->nets->samples[i];
         t->samples[i].after = (struct gather_point){s->at, t->nets->mesh->faces[s->face].normal};
         set_place(&t->samples[i], t->change, s->face, t->nets->spacing);
@@ -72,20 +78,44 @@ enum status transport_init(struct transport *t, const struct light_change *chang
                            struct err *err)
 {
     const struct light_objects *o = &change->objects;
-    *t = (struct transport){.change = change, .nets = nets, .count = nets->sample_count + o->element_count};
+    *t = (struct transport){.change = change, .nets = nets, .count = o->element_count};
     t->samples = calloc((size_t)t->count + 1, sizeof *t->samples);
     t->rows = calloc((size_t)t->count + 1, sizeof *t->rows);
     t->coloured = calloc((size_t)nets->mesh->face_count + 1, sizeof *t->coloured);
     if (!t->samples || !t->rows || !t->coloured)
         return err_nomem(err, "samples", (size_t)t->count * sizeof *t->samples);
     mark_coloured(t);
-    parallel_for((size_t)nets->sample_count, 64, set_places, t);
-    for (int i = 0; i < o->element_count; i++) {
-        struct transport_sample *s = &t->samples[nets->sample_count + i];
-        s->after = o->elements[i].point;
-        s->place = (struct light_place){.kind = LIGHT_PLACE_COLOUR,
-                                        .colour = o->list.items[o->elements[i].object].brdf.albedo};
-    }
+    for (int i = 0; i < o->element_count; i++)
+        t->samples[i] = (struct transport_sample){
+            .after = o->elements[i].point,
+            .place = {.kind = LIGHT_PLACE_COLOUR, .colour = o->list.items[o->elements[i].object].brdf.albedo}};
+    return transport_grow(t, err);
+}
+
+/* What rows send to the objects' elements follows them by `by` samples. */
+static void move_elements(struct transport *t, int elements, int by)
+{
+    for (int i = 0; i < t->count; i++)
+        for (int k = 0; k < t->rows[i].count; k++)
+            if (t->rows[i].entries[k].from >= 2 * elements) t->rows[i].entries[k].from += 2 * by;
+}
+
+enum status transport_grow(struct transport *t, struct err *err)
+{
+    const size_t elements = (size_t)t->change->objects.element_count, old = (size_t)t->count - elements;
+    const size_t added = (size_t)t->nets->sample_count - old, all = (size_t)t->count + added;
+    struct transport_sample *samples = realloc(t->samples, (all + 1) * sizeof *samples);
+    if (samples) t->samples = samples;
+    struct transport_row *rows = realloc(t->rows, (all + 1) * sizeof *rows);
+    if (rows) t->rows = rows;
+    if (!samples || !rows) return err_nomem(err, "samples", all * sizeof *samples);
+    move_elements(t, (int)old, (int)added);
+    memmove(samples + old + added, samples + old, elements * sizeof *samples);
+    memmove(rows + old + added, rows + old, elements * sizeof *rows);
+    memset(samples + old, 0, added * sizeof *samples);
+    memset(rows + old, 0, added * sizeof *rows);
+    t->count = (int)all;
+    parallel_for(added, 64, set_places, &(struct place_job){t, (int)old});
     return ST_OK;
 }
 
@@ -104,15 +134,15 @@ void transport_release(struct transport *t)
 /* What the rays of one sample add up to; one for each thread. */
 struct tally {
     double (*sums)[3]; /* by value */
-    int *touched, count;
     bool *is_touched;
+    int values, count; /* of them touched */
 };
 
 static void add_entry(struct tally *l, int from, struct rgb colour, double weight)
 {
     if (!l->is_touched[from]) {
         l->is_touched[from] = true;
-        l->touched[l->count++] = from;
+        l->count++;
     }
     l->sums[from][0] += weight * colour.r;
     l->sums[from][1] += weight * colour.g;
@@ -223,24 +253,24 @@ struct trace_job {
     atomic_bool is_short; /* of memory */
 };
 
-static int by_number(const void *a, const void *b) { return *(const int *)a - *(const int *)b; }
-
+/* Values come in order: to pass over those that no ray touched takes less time than to sort the others. */
 static bool keep_entries(struct transport_row *row, struct tally *l, double scale)
 {
     free(row->entries);
     row->entries = malloc(((size_t)l->count + 1) * sizeof *row->entries);
-    row->count = row->entries ? l->count : 0;
-    qsort(l->touched, (size_t)l->count, sizeof *l->touched, by_number);
-    for (int i = 0; i < l->count; i++) {
-        double *sum = l->sums[l->touched[i]];
+    row->count = 0;
+    for (const bool *at = l->is_touched; l->count; at++, l->count--) {
+        at = memchr(at, true, (size_t)(l->is_touched + l->values - at));
+        const int from = (int)(at - l->is_touched);
+        double *sum = l->sums[from];
         if (row->entries) {
-            row->entries[i].from = l->touched[i];
-            for (int c = 0; c < 3; c++) row->entries[i].rgb[c] = (float)(scale * sum[c]);
+            struct transport_entry *e = &row->entries[row->count++];
+            e->from = from;
+            for (int c = 0; c < 3; c++) e->rgb[c] = (float)(scale * sum[c]);
         }
         sum[0] = sum[1] = sum[2] = 0;
-        l->is_touched[l->touched[i]] = false;
+        l->is_touched[from] = false;
     }
-    l->count = 0;
     return row->entries != NULL;
 }
 
@@ -253,9 +283,10 @@ static void trace_some(void *ctx, size_t begin, size_t end, int thread)
         const struct transport_sample *s = &t->samples[i];
         struct transport_row *row = &t->rows[i];
         int covered = 0;
-        row->before = rgb_grey(0);
+        row->gathered = rgb_grey(0);
         if (s->place.kind == LIGHT_PLACE_TEXTURE)
-            row->before = gather(t, NULL, &covered, &t->change->before.field, s->place.before, j->rays, i);
+            row->gathered = gather(t, NULL, &covered, &t->change->before.field, s->place.before, j->rays, i);
+        row->before = row->gathered;
         row->own = clamp((covered / (double)j->rays - IN_SIGHT) / (HIDDEN - IN_SIGHT), 0, 1);
         row->fixed = gather(t, &j->tallies[thread], NULL, &t->change->after.field, s->after, j->rays, i);
         if (!keep_entries(row, &j->tallies[thread], PI / j->rays)) j->is_short = true;
@@ -305,19 +336,20 @@ static double smooth_holes(struct transport *t, const struct face_net *net, doub
 
 static enum status continue_into_face(struct transport *t, const struct face_net *net, struct err *err)
 {
-    const size_t count = (size_t)net->count;
-    double(*sums)[4] = malloc(count * sizeof *sums);
-    struct rgb *own = malloc(count * sizeof *own);
-    if (!sums || !own) err_nomem(err, "samples", count * sizeof *sums);
-    for (size_t i = 0; !err->status && i < count; i++) own[i] = t->rows[net->samples[i]].before;
-    for (int k = 0; !err->status && k < MAX_SWEEPS && smooth_holes(t, net, sums) > SETTLED; k++) continue;
-    for (size_t i = 0; !err->status && i < count; i++) {
+    double(*sums)[4] = malloc((size_t)net->count * sizeof *sums);
+    if (!sums) return err_nomem(err, "samples", (size_t)net->count * sizeof *sums);
+    for (int i = 0; i < net->count; i++) {
         struct transport_row *row = &t->rows[net->samples[i]];
-        if (row->own > 0) row->before = rgb_add(rgb_scale(row->before, 1 - row->own), rgb_scale(own[i], row->own));
+        row->before = row->gathered;
+    }
+    for (int k = 0; k < MAX_SWEEPS && smooth_holes(t, net, sums) > SETTLED; k++) continue;
+    for (int i = 0; i < net->count; i++) {
+        struct transport_row *row = &t->rows[net->samples[i]];
+        if (row->own > 0)
+            row->before = rgb_add(rgb_scale(row->before, 1 - row->own), rgb_scale(row->gathered, row->own));
     }
     free(sums);
-    free(own);
-    return err->status;
+    return ST_OK;
 }
 
 /* Where furniture hid a face, the bake continued the texture from around the hole, and with it the light of there: the
@@ -334,8 +366,8 @@ static enum status continue_into_holes(struct transport *t, struct err *err)
     return ST_OK;
 }
 
-enum status transport_trace(struct transport *t, int first, int rays, void (*done)(void *ctx, int64_t samples),
-                            void *done_ctx, struct err *err)
+enum status transport_trace(struct transport *t, int first, int count, int rays,
+                            void (*done)(void *ctx, int64_t samples), void *done_ctx, struct err *err)
 {
     const size_t values = 2 * (size_t)t->count + 1, threads = (size_t)parallel_threads();
     struct trace_job j = {.t = t, .first = first, .rays = rays, .done = done, .done_ctx = done_ctx};
@@ -344,15 +376,14 @@ enum status transport_trace(struct transport *t, int first, int rays, void (*don
     for (size_t k = 0; !err->status && k < threads; k++) {
         struct tally *l = &j.tallies[k];
         l->sums = calloc(values, sizeof *l->sums);
-        l->touched = calloc(values, sizeof *l->touched);
         l->is_touched = calloc(values, sizeof *l->is_touched);
-        if (!l->sums || !l->touched || !l->is_touched) err_nomem(err, "sums", values * sizeof *l->sums);
+        l->values = (int)values;
+        if (!l->sums || !l->is_touched) err_nomem(err, "sums", values * sizeof *l->sums);
     }
-    if (!err->status) parallel_for((size_t)(t->count - first), 4, trace_some, &j);
+    if (!err->status) parallel_for((size_t)count, 4, trace_some, &j);
     if (!err->status && j.is_short) err_nomem(err, "what samples send to each other", sizeof(struct transport_entry));
     for (size_t k = 0; j.tallies && k < threads; k++) {
         free(j.tallies[k].sums);
-        free(j.tallies[k].touched);
         free(j.tallies[k].is_touched);
     }
     free(j.tallies);

@@ -17,7 +17,8 @@ struct transport_entry {
 };
 
 struct transport_row {
-    struct rgb before;               /* irradiance in the unedited model; 0 where the sample has no place there */
+    struct rgb gathered;             /* irradiance in the unedited model; 0 where the sample has no place there */
+    struct rgb before;               /* the same, continued into what furniture hid */
     double own;                      /* how far things that stay hide the sample, 0 to 1: its light is not continued */
     struct rgb fixed;                /* irradiance in the edited one that no sample changes: lamps, the sky */
     struct transport_entry *entries; /* in order of `from`; owned */
@@ -43,12 +44,15 @@ struct transport {
 /* Sets the samples of `nets`, then of the objects' elements. The caller releases t in each case. */
 enum status transport_init(struct transport *t, const struct light_change *change, const struct face_nets *nets,
                            struct err *err);
+/* Takes in the samples that were added to the nets since, without rows yet. Rows that are there stay: they send to the
+ * samples of their time. */
+enum status transport_grow(struct transport *t, struct err *err);
 void transport_release(struct transport *t);
 
-/* Computes rows first .. t->count - 1 with `rays` rays each. Same bits for any number of threads. done: told of
+/* Computes `count` rows from `first` on with `rays` rays each. Same bits for any number of threads. done: told of
  * samples. */
-enum status transport_trace(struct transport *t, int first, int rays, void (*done)(void *ctx, int64_t samples),
-                            void *done_ctx, struct err *err);
+enum status transport_trace(struct transport *t, int first, int count, int rays,
+                            void (*done)(void *ctx, int64_t samples), void *done_ctx, struct err *err);
 
 /* Irradiance at a sample, from the values of all samples, rgb each: 2 j the quotient, 2 j + 1 the irradiance of sample
  * j. */

@@ -69,15 +69,19 @@ static enum status make_nets(struct work *w, struct err *err)
 
 static void count_done(void *ctx, int64_t samples) { progress_add(ctx, samples); }
 
-/* The quotients, or irradiances, of all samples after one round. */
-static enum status first_values(struct work *w, struct rgb **values, struct err *err)
+/* Few rays tell where samples are needed. Rows of earlier samples stay: what they send to samples that lay further
+ * apart differs little. */
+static enum status trace_few(struct work *w, int first, int count, struct err *err)
+{
+    const int rays = w->job->params.rays / FEW_RAYS;
+    return transport_trace(&w->transport, first, count, rays < GLANCES ? GLANCES : rays, NULL, NULL, err);
+}
+
+/* The quotients, or irradiances, of all samples after two rounds. */
+static enum status first_values(const struct work *w, struct rgb **values, struct err *err)
 {
     struct rounds r = {0};
-    transport_release(&w->transport);
-    transport_init(&w->transport, &w->change, &w->nets, err);
-    const int rays = w->job->params.rays / FEW_RAYS;
-    if (!err->status && !transport_trace(&w->transport, 0, rays < GLANCES ? GLANCES : rays, NULL, NULL, err))
-        rounds_run(&r, &w->transport, 2, w->job->params.tolerance, err);
+    rounds_run(&r, &w->transport, 2, w->job->params.tolerance, err);
     *values = r.values;
     r.values = NULL;
     rounds_release(&r);
@@ -111,16 +115,18 @@ static enum status refine_face(struct work *w, int face, const struct rgb *value
 static enum status refine(struct work *w, struct err *err)
 {
     const double finest = w->job->params.finest * model_rays_size(&w->change.after.model);
-    for (int halvings = 0; ldexp(w->nets.spacing, -halvings) > finest; halvings++) {
-        const int before = w->nets.sample_count;
+    struct transport *t = &w->transport;
+    int first = 0, count = t->count; /* samples without rows */
+    for (int halvings = 0; count && ldexp(w->nets.spacing, -halvings) > finest; halvings++) {
         struct rgb *values = NULL;
+        if (trace_few(w, first, count, err)) return err->status;
+        first = w->nets.sample_count;
         first_values(w, &values, err);
         for (int i = 0; values && !err->status && i < w->nets.mesh->face_count; i++)
             refine_face(w, i, values, finest, err);
         free(values);
-        if (!err->status) face_nets_connect(&w->nets, err);
-        if (err->status) return err->status;
-        if (w->nets.sample_count == before) break;
+        if (err->status || face_nets_connect(&w->nets, err) || transport_grow(t, err)) return err->status;
+        count = w->nets.sample_count - first;
     }
     return ST_OK;
 }
@@ -129,10 +135,8 @@ static enum status refine(struct work *w, struct err *err)
 
 static enum status trace(struct work *w, struct err *err)
 {
-    transport_release(&w->transport);
-    if (transport_init(&w->transport, &w->change, &w->nets, err)) return err->status;
     progress_start(&w->progress, "light", w->transport.count, "samples");
-    transport_trace(&w->transport, 0, w->job->params.rays, count_done, &w->progress, err);
+    transport_trace(&w->transport, 0, w->transport.count, w->job->params.rays, count_done, &w->progress, err);
     progress_end(&w->progress);
     return err->status;
 }
@@ -185,8 +189,9 @@ static enum status run(struct work *w, struct err *err)
     struct update_job *j = w->job;
     char vita[FILE_PATH];
     if (light_change_read(&w->change, &j->files, &j->prov, err) ||
-        edited_atlas_make(&w->atlas, &w->change, j->files.vita, err) || make_nets(w, err) || refine(w, err) ||
-        trace(w, err) || rounds_run(&w->rounds, &w->transport, j->params.rounds, j->params.tolerance, err))
+        edited_atlas_make(&w->atlas, &w->change, j->files.vita, err) || make_nets(w, err) ||
+        transport_init(&w->transport, &w->change, &w->nets, err) || refine(w, err) || trace(w, err) ||
+        rounds_run(&w->rounds, &w->transport, j->params.rounds, j->params.tolerance, err))
         return err->status;
     tell(w);
     if (write_rounds(w, err) || write_objects(w, err) || file_path(vita, j->out, "vita", "", err)) return err->status;

@@ -39,7 +39,7 @@ static void trace(struct traced *t, struct edit *e, double spacing)
     struct err err = ERR_INIT;
     edit_write(e);
     prepare(t, e, spacing);
-    assert_ok(transport_trace(&t->transport, 0, RAYS, NULL, NULL, &err), err);
+    assert_ok(transport_trace(&t->transport, 0, t->transport.count, RAYS, NULL, NULL, &err), err);
 }
 
 static void release(struct traced *t)
@@ -93,6 +93,21 @@ static void rows_of_a_uniform_room_sum_to_pi_times_its_radiance(void **state)
     release(&t);
 }
 
+static void assert_equal_rows(const struct transport *s, const struct transport *t)
+{
+    assert_int_equal(s->count, t->count);
+    for (int i = 0; i < s->count; i++) {
+        const struct transport_row *a = &s->rows[i], *b = &t->rows[i];
+        assert_memory_equal(&a->before, &b->before, sizeof a->before);
+        assert_memory_equal(&a->fixed, &b->fixed, sizeof a->fixed);
+        assert_int_equal(a->count, b->count);
+        for (int k = 0; k < a->count; k++) {
+            assert_int_equal(a->entries[k].from, b->entries[k].from);
+            assert_memory_equal(a->entries[k].rgb, b->entries[k].rgb, sizeof a->entries[k].rgb);
+        }
+    }
+}
+
 static void threads_do_not_change_a_bit(void **state)
 {
     struct edit e = edit_of_closed_room(coloured);
@@ -104,17 +119,7 @@ static void threads_do_not_change_a_bit(void **state)
     parallel_set_threads(2);
     trace(&two, &e, 0.7);
     parallel_set_threads(0);
-    assert_int_equal(one.transport.count, two.transport.count);
-    for (int i = 0; i < one.transport.count; i++) {
-        const struct transport_row *a = &one.transport.rows[i], *b = &two.transport.rows[i];
-        assert_memory_equal(&a->before, &b->before, sizeof a->before);
-        assert_memory_equal(&a->fixed, &b->fixed, sizeof a->fixed);
-        assert_int_equal(a->count, b->count);
-        for (int k = 0; k < a->count; k++) {
-            assert_int_equal(a->entries[k].from, b->entries[k].from);
-            assert_memory_equal(a->entries[k].rgb, b->entries[k].rgb, sizeof a->entries[k].rgb);
-        }
-    }
+    assert_equal_rows(&one.transport, &two.transport);
     release(&one);
     release(&two);
 }
@@ -254,7 +259,7 @@ static void trace_cleared(struct cleared *c, bool holes, bool painted)
         if (holes && is_in_hole(c, t->samples[i].after.at)) place->source = LIGHT_SYNTHESISED;
         if (painted && t->samples[i].after.at.x > HOLE + EDGE) place->kind = LIGHT_PLACE_COLOUR;
     }
-    assert_ok(transport_trace(t, 0, RAYS, NULL, NULL, &err), err);
+    assert_ok(transport_trace(t, 0, t->count, RAYS, NULL, NULL, &err), err);
 }
 
 /* The least and the most light before the edit on the floor around the hole, which the hole's is to be between. */
@@ -325,7 +330,7 @@ static void the_light_in_a_gap_behind_furniture_that_stays_does_not_change(void 
         if (t.nets.samples[i].face == floor && hypot(p.x + 0.9, p.y + 0.9) < 0.8)
             t.transport.samples[i].place.source = LIGHT_SYNTHESISED;
     }
-    assert_ok(transport_trace(&t.transport, 0, RAYS, NULL, NULL, &err), err);
+    assert_ok(transport_trace(&t.transport, 0, t.transport.count, RAYS, NULL, NULL, &err), err);
     for (int i = 0; i < t.nets.sample_count; i++) {
         const struct vec3 p = t.transport.samples[i].after.at;
         const double off = hypot(p.x + 0.9, p.y + 0.9);
@@ -338,6 +343,50 @@ static void the_light_in_a_gap_behind_furniture_that_stays_does_not_change(void 
     }
     assert_true(hidden > 3 && in_sight > 10);
     release(&t);
+}
+
+/* Rows send to the block's elements, which now lie behind one more sample, what they sent before. */
+static void samples_that_come_later_change_no_row_of_before(void **state)
+{
+    struct edit e = edit_of_closed_room(plain);
+    struct traced t, whole;
+    struct err err = ERR_INIT;
+    (void)state;
+    e.objects = block;
+    e.mesh = cube;
+    trace(&t, &e, 0.5);
+    const int floor = face_named(&t.change.after.model.mesh, "floor/5"), old = t.nets.sample_count;
+    const int elements = t.change.objects.element_count;
+    struct rgb *sums = malloc((size_t)t.transport.count * sizeof *sums);
+    struct rgb *values = malloc(2 * (size_t)t.transport.count * sizeof *values);
+    assert_true(sums && values && elements > 0);
+    for (int i = 0; i < 2 * t.transport.count; i++) values[i] = rgb_grey(i < 2 * old ? 1 + i % 7 : 50 + i - 2 * old);
+    for (int i = 0; i < t.transport.count; i++) sums[i] = transport_gather(&t.transport.rows[i], values);
+    assert_ok(face_nets_add(&t.nets, floor, vec3_make(0.1, 0.1, -2), &err), err);
+    assert_ok(face_nets_connect(&t.nets, &err), err);
+    assert_ok(transport_grow(&t.transport, &err), err);
+    assert_int_equal(t.transport.count, old + 1 + elements);
+    assert_int_equal(t.transport.rows[old].count, 0);
+    values = realloc(values, 2 * (size_t)t.transport.count * sizeof *values);
+    assert_non_null(values);
+    memmove(values + 2 * old + 2, values + 2 * old, 2 * (size_t)elements * sizeof *values);
+    for (int i = 0; i < t.transport.count; i++) {
+        if (i == old) continue;
+        const struct rgb now = transport_gather(&t.transport.rows[i], values);
+        assert_memory_equal(&now, &sums[i - (i > old)], sizeof now);
+    }
+    prepare(&whole, &e, 0.5);
+    assert_ok(face_nets_add(&whole.nets, floor, vec3_make(0.1, 0.1, -2), &err), err);
+    assert_ok(face_nets_connect(&whole.nets, &err), err);
+    transport_release(&whole.transport);
+    assert_ok(transport_init(&whole.transport, &whole.change, &whole.nets, &err), err);
+    for (struct transport *at = &t.transport; at; at = at == &t.transport ? &whole.transport : NULL)
+        assert_ok(transport_trace(at, 0, at->count, RAYS, NULL, NULL, &err), err);
+    assert_equal_rows(&t.transport, &whole.transport);
+    free(sums);
+    free(values);
+    release(&t);
+    release(&whole);
 }
 
 /* A hole of 40 samples across, as that of a bed: light must come in from its rim to its middle. */
@@ -364,7 +413,7 @@ static void the_middle_of_a_large_hole_gets_the_light_around_it(void **state)
     assert_ok(transport_init(t, &c.traced.change, &c.traced.nets, &err), err);
     for (int i = 0; i < c.traced.nets.sample_count; i++)
         if (is_in_hole(&c, t->samples[i].after.at)) t->samples[i].place.source = LIGHT_SYNTHESISED;
-    assert_ok(transport_trace(t, 0, RAYS / 2, NULL, NULL, &err), err);
+    assert_ok(transport_trace(t, 0, t->count, RAYS / 2, NULL, NULL, &err), err);
     light_around(range, &c);
     for (int i = 0; i < c.traced.nets.sample_count; i++) {
         const double light = t->rows[i].before.g;
@@ -405,6 +454,7 @@ int main(void)
         cmocka_unit_test(an_object_that_touches_the_floor_leaves_no_light_under_it),
         cmocka_unit_test(a_hole_behind_furniture_gets_the_light_around_it),
         cmocka_unit_test(the_light_in_a_gap_behind_furniture_that_stays_does_not_change),
+        cmocka_unit_test(samples_that_come_later_change_no_row_of_before),
         cmocka_unit_test(the_middle_of_a_large_hole_gets_the_light_around_it),
         cmocka_unit_test(paint_beside_a_hole_does_not_darken_it),
     };
