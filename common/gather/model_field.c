@@ -76,24 +76,33 @@ static void see_surface(struct light_look *seen, const struct model_field *f, co
                                 f->model.mesh.face_count + 2 * k + back};
 }
 
+/* What is seen of the outdoors, but for openings with reference images. place: where outdoors.exr has it; not read if
+ * there is none. */
+static enum light_source see_sky(struct rgb *radiance, const struct model_field *f, const struct outdoors_place *place)
+{
+    float rgb[3];
+    *radiance = rgb_grey(0);
+    if (!f->outdoors.rgb) return LIGHT_NONE;
+    const enum outdoors_source source = outdoors_look(rgb, &f->outdoors, place);
+    *radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
+    return source == OUTDOORS_GUESSED ? LIGHT_SKY_GUESSED : LIGHT_SKY;
+}
+
+static bool see_opening(struct rgb *radiance, const struct model_field *f, struct vec3 from, struct vec3 direction)
+{
+    float rgb[3];
+    if (!field_openings_look(rgb, &f->openings, from, direction)) return false;
+    *radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
+    return true;
+}
+
 enum light_source model_field_outdoors(struct rgb *radiance, const struct model_field *f, struct vec3 from,
                                        struct vec3 direction)
 {
-    float rgb[3];
-    enum light_source seen = LIGHT_SKY;
-    if (!field_openings_look(rgb, &f->openings, from, direction)) {
-        const enum outdoors_source source = outdoors_sample(rgb, &f->outdoors, direction);
-        seen = !f->outdoors.rgb ? LIGHT_NONE : source == OUTDOORS_GUESSED ? LIGHT_SKY_GUESSED : LIGHT_SKY;
-    }
-    *radiance = rgb_make((double)rgb[0], (double)rgb[1], (double)rgb[2]);
-    return seen;
-}
-
-static void see_outdoors(struct light_look *seen, const struct model_field *f, struct vec3 from, struct vec3 direction)
-{
-    seen->distance = INFINITY;
-    seen->face = -1;
-    seen->source = model_field_outdoors(&seen->radiance, f, from, direction);
+    struct outdoors_place place;
+    if (see_opening(radiance, f, from, direction)) return LIGHT_SKY;
+    if (f->outdoors.rgb) place = outdoors_find(&f->outdoors, direction);
+    return see_sky(radiance, f, &place);
 }
 
 /* glossy: whether materials count */
@@ -104,6 +113,8 @@ static void look_from(const struct model_field *f, const struct vec3 from[RAY_PA
     const struct vec3 off = vec3_scale(normal, f->model.rays.epsilon);
     struct vec3 origin[RAY_PACKET];
     struct ray_hit hits[RAY_PACKET];
+    struct outdoors_place places[RAY_PACKET];
+    unsigned faces = 0, sky = 0;
     for (int k = 0; k < RAY_PACKET; k++)
         if (active >> k & 1) origin[k] = vec3_add(from[k], off);
     const unsigned hit = ray_scene_hit_packet(&f->model.rays, origin, direction, active, hits);
@@ -115,14 +126,24 @@ static void look_from(const struct model_field *f, const struct vec3 from[RAY_PA
         if (!(active >> k & 1)) continue;
         const double t = hit >> k & 1 ? hits[k].t : INFINITY;
         const struct lamp *lamp = model_field_lamp(f, origin[k], direction[k], t, &at);
-        if (lamp)
+        if (lamp) {
             seen[k] = (struct light_look){lamp_radiance(lamp, vec3_scale(direction[k], -1)), at, LIGHT_LAMP, -1};
-        else if (hit >> k & 1 && (int)hits[k].id < f->model.mesh.face_count)
+        } else if (hit >> k & 1) {
+            faces |= 1u << k;
+        } else {
+            seen[k] = (struct light_look){{0, 0, 0}, INFINITY, LIGHT_SKY, -1};
+            if (see_opening(&seen[k].radiance, f, origin[k], direction[k])) continue;
+            if (f->outdoors.rgb) places[k] = outdoors_find(&f->outdoors, direction[k]);
+            sky |= 1u << k;
+        }
+    }
+    for (int k = 0; k < RAY_PACKET; k++) {
+        if (sky >> k & 1) seen[k].source = see_sky(&seen[k].radiance, f, &places[k]);
+        if (!(faces >> k & 1)) continue;
+        if ((int)hits[k].id < f->model.mesh.face_count)
             see_face(&seen[k], f, &hits[k], direction[k], glossy);
-        else if (hit >> k & 1)
-            see_surface(&seen[k], f, &hits[k]);
         else
-            see_outdoors(&seen[k], f, origin[k], direction[k]);
+            see_surface(&seen[k], f, &hits[k]);
     }
 }
 

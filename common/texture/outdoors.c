@@ -121,20 +121,40 @@ static size_t pixel_at(const struct outdoors *o, int x, int y)
     return (size_t)y * (size_t)o->width + (size_t)((x + o->width) % o->width);
 }
 
-enum outdoors_source outdoors_sample(float rgb[3], const struct outdoors *o, struct vec3 direction)
+struct outdoors_place outdoors_find(const struct outdoors *o, struct vec3 direction)
 {
-    rgb[0] = rgb[1] = rgb[2] = 0;
-    if (!o->rgb) return OUTDOORS_GUESSED;
+    struct outdoors_place place;
     const double azimuth = atan2(direction.y, direction.x);
     const double elevation = atan2(direction.z, hypot(direction.x, direction.y));
     const double u = clamp((azimuth + PI) / (2 * PI), 0, 1) * o->width - 0.5;
     const double v = clamp((PI / 2 - elevation) / PI, 0, 1) * o->height - 0.5;
     const int x = (int)floor(u), y = (int)floor(v);
-    const float fx = (float)(u - x), fy = (float)(v - y);
+    place.right = (float)(u - x);
+    place.bottom = (float)(v - y);
+    for (int k = 0; k < 4; k++) {
+        place.pixels[k] = pixel_at(o, x + (k & 1), y + (k >> 1));
+        __builtin_prefetch(o->rgb + 3 * place.pixels[k]);
+    }
+    __builtin_prefetch(o->source + place.pixels[0]);
+    return place;
+}
+
+enum outdoors_source outdoors_look(float rgb[3], const struct outdoors *o, const struct outdoors_place *place)
+{
+    const float fx = place->right, fy = place->bottom;
+    rgb[0] = rgb[1] = rgb[2] = 0;
     for (int k = 0; k < 4; k++) {
         const float weight = (k & 1 ? fx : 1 - fx) * (k >> 1 ? fy : 1 - fy);
-        const float *p = o->rgb + 3 * pixel_at(o, x + (k & 1), y + (k >> 1));
+        const float *p = o->rgb + 3 * place->pixels[k];
         for (int c = 0; c < 3; c++) rgb[c] += weight * p[c];
     }
-    return o->source[pixel_at(o, x + (fx >= 0.5f), y + (fy >= 0.5f))];
+    return o->source[place->pixels[(fx >= 0.5f) + 2 * (fy >= 0.5f)]];
+}
+
+enum outdoors_source outdoors_sample(float rgb[3], const struct outdoors *o, struct vec3 direction)
+{
+    rgb[0] = rgb[1] = rgb[2] = 0;
+    if (!o->rgb) return OUTDOORS_GUESSED;
+    const struct outdoors_place place = outdoors_find(o, direction);
+    return outdoors_look(rgb, o, &place);
 }

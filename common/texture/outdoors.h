@@ -31,6 +31,17 @@ struct vec3 outdoors_direction(const struct outdoors *o, double x, double y);
 /* ST_DATA: a width other than twice the height, a missing channel, a negative radiance, an unknown source. */
 enum status outdoors_read(struct outdoors *o, const char *path, struct provenance *prov, struct err *err);
 enum status outdoors_write(const struct outdoors *o, const char *path, const struct provenance *prov, struct err *err);
+/* Where a direction falls in the picture. */
+struct outdoors_place {
+    size_t pixels[4];    /* left and right of the upper row, then of the lower one */
+    float right, bottom; /* how far it lies towards them, 0 to 1 */
+};
+
+/* For a direction of any length. Asks for the memory there, so that a look at several places waits once. o is not
+ * empty. */
+struct outdoors_place outdoors_find(const struct outdoors *o, struct vec3 direction);
+/* The radiance there, bilinear; returns the source of the nearest pixel. */
+enum outdoors_source outdoors_look(float rgb[3], const struct outdoors *o, const struct outdoors_place *place);
 /* The radiance from a direction of any length, bilinear; returns the source of the nearest pixel. An empty `outdoors`
  * gives 0 and OUTDOORS_GUESSED. */
 enum outdoors_source outdoors_sample(float rgb[3], const struct outdoors *o, struct vec3 direction);
