@@ -147,40 +147,51 @@ static void trace(struct tally *t)
     t->waiting = 0;
 }
 
-static double kernel(const struct mixture *m, struct vec3 direction)
+static f64x4 kernel(const struct mixture *m, const struct directions4 *d)
 {
+    const struct vec3 n = m->point.normal;
+    f64x4 k = d->x * n.x + d->y * n.y + d->z * n.z;
     double density;
-    if (m->lobe.kind == BRDF_LAMBERT) return vec3_dot(direction, m->point.normal);
-    return brdf_eval(&m->lobe, m->point.normal, m->view, direction, &density).r;
+    if (m->lobe.kind == BRDF_LAMBERT) return k;
+    for (int i = 0; i < 4; i++)
+        k[i] = brdf_eval(&m->lobe, n, m->view, vec3_make(d->x[i], d->y[i], d->z[i]), &density).r;
+    return k;
 }
 
-static void add_ray(struct tally *t, int strategy, int replicate, struct vec3 direction)
+/* The first `count` of four rays. */
+static void add_rays(struct tally *t, int strategy, int replicate, f64x4 u, f64x4 v, int count)
 {
     const struct mixture *m = t->mixture;
-    double own = 0, squares = 0;
+    struct directions4 d;
+    f64x4 own = {0}, squares = {0};
+    const unsigned above = strategy_sample4(&m->strategies[strategy], u, v, &d);
     for (int i = 0; i < m->count; i++) {
-        const double d = t->rays[i] * strategy_density(&m->strategies[i], direction);
-        squares += d * d;
-        if (i == strategy) own = d;
+        const f64x4 density = t->rays[i] * strategy_density4(&m->strategies[i], &d);
+        squares += density * density;
+        if (i == strategy) own = density;
     }
-    if (!(own > 0)) return;
-    t->direction[t->waiting] = direction;
-    t->weight[t->waiting] = kernel(m, direction) * (own / squares);
-    t->strategy[t->waiting] = strategy;
-    t->replicate[t->waiting++] = replicate;
-    if (t->waiting == RAY_PACKET) trace(t);
+    const f64x4 weight = kernel(m, &d) * (own / squares);
+    for (int k = 0; k < count; k++) {
+        if (!(above >> k & 1) || !(own[k] > 0)) continue;
+        t->direction[t->waiting] = vec3_make(d.x[k], d.y[k], d.z[k]);
+        t->weight[t->waiting] = weight[k];
+        t->strategy[t->waiting] = strategy;
+        t->replicate[t->waiting++] = replicate;
+        if (t->waiting == RAY_PACKET) trace(t);
+    }
 }
 
 static void add_set(struct tally *t, int strategy, int replicate, const struct rng *rng)
 {
-    struct sobol points = sobol_make(rng, (uint64_t)replicate, t->rays[strategy]);
-    for (int i = 0; i < t->rays[strategy]; i++) {
-        struct vec3 direction;
-        double u[4];
+    const int rays = t->rays[strategy];
+    struct sobol points = sobol_make(rng, (uint64_t)replicate, rays);
+    for (int i = 0; i < rays; i += SOBOL_BATCH) {
+        double u[2][SOBOL_BATCH];
         points.sample = (uint32_t)i;
-        sobol_group(&points, (uint32_t)strategy, u);
-        if (strategy_sample(&t->mixture->strategies[strategy], u, &direction))
-            add_ray(t, strategy, replicate, direction);
+        sobol_pairs(&points, (uint32_t)strategy, u);
+        for (int k = 0; k < SOBOL_BATCH && i + k < rays; k += 4)
+            add_rays(t, strategy, replicate, f64x4_load(u[0] + k), f64x4_load(u[1] + k),
+                     rays - i - k < 4 ? rays - i - k : 4);
     }
 }
 

@@ -173,95 +173,171 @@ bool strategy_emitter(struct strategy *s, struct gather_point p, const struct em
 
 /* ---------------------------------------------------------------------------------------------------------- samples */
 
-static struct vec3 sample_cosine(const struct strategy *s, const double u[2])
+/* a s + b t + c u, in each lane */
+static struct directions4 sum4(struct vec3 a, f64x4 s, struct vec3 b, f64x4 t, struct vec3 c, f64x4 u)
 {
-    const double r = sqrt(u[0]);
-    double c, sn;
-    fast_cos_sin(u[1], &c, &sn);
-    return vec3_add(vec3_add(vec3_scale(s->x, r * c), vec3_scale(s->y, r * sn)),
-                    vec3_scale(s->point.normal, sqrt(1 - u[0])));
+    return (struct directions4){a.x * s + b.x * t + c.x * u, a.y * s + b.y * t + c.y * u, a.z * s + b.z * t + c.z * u};
 }
 
-static struct vec3 sample_sun(const struct strategy *s, const double u[2])
+static f64x4 dot4(const struct directions4 *d, struct vec3 v) { return d->x * v.x + d->y * v.y + d->z * v.z; }
+
+static struct directions4 normalized4(struct directions4 d)
 {
-    const double less = u[0] * (1 - s->emitter->cone); /* 1 - cosine */
-    return frame_direction(s->emitter->normal, sqrt(less * (2 - less)), 1 - less, u[1]);
+    const f64x4 scale = 1 / f64x4_sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
+    return (struct directions4){scale * d.x, scale * d.y, scale * d.z};
 }
 
-static struct vec3 sample_rectangle(const struct seen_rectangle *r, const double u[2])
+static f64x4 clamp4(f64x4 x, double low, double high)
 {
-    const double angle = u[0] * r->solid_angle + r->offset;
-    const double f = (cos(angle) * r->b0 - r->b1) / sin(angle);
-    const double c = clamp((f > 0 ? 1 : -1) / sqrt(f * f + r->b0 * r->b0), -1, 1);
-    const double x = clamp(-c * r->z0 / sqrt(fast_max(1 - c * c, 1e-300)), r->x0, r->x1);
-    const double d = sqrt(x * x + r->z0 * r->z0);
-    const double h0 = r->y0 / sqrt(d * d + r->y0 * r->y0), h1 = r->y1 / sqrt(d * d + r->y1 * r->y1);
-    const double h = h0 + u[1] * (h1 - h0), hh = h * h;
-    const double y = hh < 1 - 1e-12 ? h * d / sqrt(1 - hh) : h > 0 ? r->y1 : r->y0;
-    return vec3_normalize(vec3_add(vec3_add(vec3_scale(r->x, x), vec3_scale(r->y, y)), vec3_scale(r->z, r->z0)));
+    return f64x4_min(f64x4_max(x, f64x4_all(low)), f64x4_all(high));
 }
 
-static struct vec3 sample_area(const struct strategy *s, const double u[2])
+static struct directions4 sample_cosine(const struct strategy *s, f64x4 u, f64x4 v)
 {
-    double a = 2 * u[0] - 1, b = 2 * u[1] - 1;
+    const f64x4 r = f64x4_sqrt(u);
+    f64x4 c, sn;
+    fast_cos_sin4(v, &c, &sn);
+    return sum4(s->x, r * c, s->y, r * sn, s->point.normal, f64x4_sqrt(1 - u));
+}
+
+static struct directions4 sample_sun(const struct strategy *s, f64x4 u, f64x4 v)
+{
+    const f64x4 less = u * (1 - s->emitter->cone); /* 1 - cosine */
+    const f64x4 sine = f64x4_sqrt(less * (2 - less));
+    struct vec3 x, y;
+    f64x4 c, sn;
+    frame_from_normal(s->emitter->normal, &x, &y);
+    fast_cos_sin4(v, &c, &sn);
+    return sum4(x, sine * c, y, sine * sn, s->emitter->normal, 1 - less);
+}
+
+static struct directions4 sample_rectangle(const struct seen_rectangle *r, f64x4 u, f64x4 v)
+{
+    f64x4 c, sn;
+    fast_cos_sin4((u * r->solid_angle + r->offset) / (2 * PI), &c, &sn);
+    const f64x4 f = (c * r->b0 - r->b1) / sn, one = f64x4_if(f > 0, f64x4_all(1), f64x4_all(-1));
+    const f64x4 cosine = clamp4(one / f64x4_sqrt(f * f + r->b0 * r->b0), -1, 1);
+    const f64x4 sine = f64x4_sqrt(f64x4_max(1 - cosine * cosine, f64x4_all(1e-300)));
+    const f64x4 x = clamp4(-cosine * r->z0 / sine, r->x0, r->x1), dd = x * x + r->z0 * r->z0;
+    const f64x4 h0 = r->y0 / f64x4_sqrt(dd + r->y0 * r->y0), h1 = r->y1 / f64x4_sqrt(dd + r->y1 * r->y1);
+    const f64x4 h = h0 + v * (h1 - h0), hh = h * h;
+    const f64x4 end = f64x4_if(h > 0, f64x4_all(r->y1), f64x4_all(r->y0));
+    const f64x4 y = f64x4_if(hh < 1 - 1e-12, h * f64x4_sqrt(dd / (1 - hh)), end);
+    return normalized4(sum4(r->x, x, r->y, y, r->z, f64x4_all(r->z0)));
+}
+
+static struct directions4 sample_area(const struct strategy *s, f64x4 u, f64x4 v)
+{
+    f64x4 a = 2 * u - 1, b = 2 * v - 1;
     if (s->kind == STRATEGY_DISK) {
-        double c, sn;
-        const double r = sqrt(u[0]);
-        fast_cos_sin(u[1], &c, &sn);
-        a = r * c;
-        b = r * sn;
+        const f64x4 r = f64x4_sqrt(u);
+        fast_cos_sin4(v, &a, &b);
+        a *= r;
+        b *= r;
     }
-    return vec3_normalize(vec3_add(s->to, vec3_add(vec3_scale(s->half[0], a), vec3_scale(s->half[1], b))));
+    return normalized4(sum4(s->half[0], a, s->half[1], b, s->to, f64x4_all(1)));
+}
+
+static struct directions4 sample_lobe(const struct strategy *s, f64x4 u, f64x4 v)
+{
+    struct directions4 d = {{0}, {0}, {0}};
+    for (int k = 0; k < 4; k++) {
+        const double three[3] = {0, u[k], v[k]};
+        struct vec3 direction;
+        if (!brdf_sample(s->lobe, s->point.normal, s->view, three, &direction)) continue;
+        d.x[k] = direction.x, d.y[k] = direction.y, d.z[k] = direction.z;
+    }
+    return d;
+}
+
+unsigned strategy_sample4(const struct strategy *s, f64x4 u, f64x4 v, struct directions4 *d)
+{
+    switch (s->kind) {
+    case STRATEGY_COSINE:
+        *d = sample_cosine(s, u, v);
+        break;
+    case STRATEGY_LOBE:
+        *d = sample_lobe(s, u, v);
+        break;
+    case STRATEGY_SUN:
+        *d = sample_sun(s, u, v);
+        break;
+    case STRATEGY_RECTANGLE:
+        *d = sample_rectangle(&s->rectangle, u, v);
+        break;
+    case STRATEGY_DISK:
+    case STRATEGY_QUAD:
+        *d = sample_area(s, u, v);
+        break;
+    }
+    return i64x4_signs(dot4(d, s->point.normal) > 0);
+}
+
+_Static_assert(RAY_PACKET == SOBOL_BATCH && RAY_PACKET % 4 == 0, "packets are batches of samples");
+
+int strategy_packet(const struct strategy *s, const struct sobol *points, uint32_t group, int count,
+                    struct vec3 directions[RAY_PACKET])
+{
+    double u[2][SOBOL_BATCH];
+    int above = 0;
+    sobol_pairs(points, group, u);
+    for (int i = 0; i < count; i += 4) {
+        struct directions4 d;
+        const unsigned is_above = strategy_sample4(s, f64x4_load(u[0] + i), f64x4_load(u[1] + i), &d);
+        for (int k = 0; k < 4 && i + k < count; k++)
+            if (is_above >> k & 1) directions[above++] = vec3_make(d.x[k], d.y[k], d.z[k]);
+    }
+    return above;
 }
 
 bool strategy_sample(const struct strategy *s, const double u[2], struct vec3 *direction)
 {
-    const double three[3] = {0, u[0], u[1]};
-    switch (s->kind) {
-    case STRATEGY_COSINE:
-        *direction = sample_cosine(s, u);
-        break;
-    case STRATEGY_LOBE:
-        return brdf_sample(s->lobe, s->point.normal, s->view, three, direction);
-    case STRATEGY_SUN:
-        *direction = sample_sun(s, u);
-        break;
-    case STRATEGY_RECTANGLE:
-        *direction = sample_rectangle(&s->rectangle, u);
-        break;
-    case STRATEGY_DISK:
-    case STRATEGY_QUAD:
-        *direction = sample_area(s, u);
-        break;
-    }
-    return vec3_dot(*direction, s->point.normal) > 0;
+    struct directions4 d;
+    const bool above = strategy_sample4(s, f64x4_all(u[0]), f64x4_all(u[1]), &d) & 1;
+    *direction = vec3_make(d.x[0], d.y[0], d.z[0]);
+    return above;
 }
 
 /* -------------------------------------------------------------------------------------------------------- densities */
 
-static double area_density(const struct strategy *s, struct vec3 direction)
+static f64x4 area_density(const struct strategy *s, const struct directions4 *d)
 {
-    const double cosine = -vec3_dot(direction, s->emitter->normal);
-    if (!(cosine > 0)) return 0;
-    const double t = -vec3_dot(s->to, s->emitter->normal) / cosine;
-    const struct vec3 q = vec3_sub(vec3_scale(direction, t), s->to);
-    const double a = vec3_dot(s->dual[0], q), b = vec3_dot(s->dual[1], q), edge = 1 + 1e-12;
-    if (s->kind == STRATEGY_DISK ? a * a + b * b > edge : fast_max(fabs(a), fabs(b)) > edge) return 0;
-    return s->kind == STRATEGY_RECTANGLE ? 1 / s->rectangle.solid_angle : t * t / (s->area * cosine);
+    const f64x4 cosine = -dot4(d, s->emitter->normal), t = -vec3_dot(s->to, s->emitter->normal) / cosine;
+    const struct directions4 q = {d->x * t - s->to.x, d->y * t - s->to.y, d->z * t - s->to.z};
+    const f64x4 a = dot4(&q, s->dual[0]), b = dot4(&q, s->dual[1]), aa = a * a, bb = b * b;
+    const f64x4 out = s->kind == STRATEGY_DISK ? aa + bb : f64x4_max(aa, bb);
+    const f64x4 density =
+        s->kind == STRATEGY_RECTANGLE ? f64x4_all(1 / s->rectangle.solid_angle) : t * t / (s->area * cosine);
+    return f64x4_where((cosine > 0) & (out <= 1 + 2e-12), density);
+}
+
+static f64x4 lobe_density(const struct strategy *s, const struct directions4 *d)
+{
+    f64x4 density;
+    for (int k = 0; k < 4; k++) {
+        double one;
+        brdf_eval(s->lobe, s->point.normal, s->view, vec3_make(d->x[k], d->y[k], d->z[k]), &one);
+        density[k] = one;
+    }
+    return density;
+}
+
+f64x4 strategy_density4(const struct strategy *s, const struct directions4 *d)
+{
+    switch (s->kind) {
+    case STRATEGY_COSINE:
+        return f64x4_max(dot4(d, s->point.normal), f64x4_all(0)) / PI;
+    case STRATEGY_LOBE:
+        return lobe_density(s, d);
+    case STRATEGY_SUN:
+        return f64x4_where(dot4(d, s->emitter->normal) >= s->emitter->cone - 1e-15, f64x4_all(1 / s->area));
+    default:
+        return area_density(s, d);
+    }
 }
 
 double strategy_density(const struct strategy *s, struct vec3 direction)
 {
-    double density;
-    switch (s->kind) {
-    case STRATEGY_COSINE:
-        return fast_max(vec3_dot(direction, s->point.normal), 0) / PI;
-    case STRATEGY_LOBE:
-        brdf_eval(s->lobe, s->point.normal, s->view, direction, &density);
-        return density;
-    case STRATEGY_SUN:
-        return vec3_dot(direction, s->emitter->normal) >= s->emitter->cone - 1e-15 ? 1 / s->area : 0;
-    default:
-        return area_density(s, direction);
-    }
+    const struct directions4 d = {f64x4_all(direction.x), f64x4_all(direction.y), f64x4_all(direction.z)};
+    return strategy_density4(s, &d)[0];
 }

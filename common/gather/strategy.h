@@ -6,6 +6,8 @@
 
 #include "common/gather/irradiance.h"
 #include "common/light/brdf.h"
+#include "common/light/sobol.h"
+#include "common/math/lanes.h"
 
 enum strategy_kind {
     STRATEGY_COSINE,
@@ -45,9 +47,24 @@ void strategy_lobe(struct strategy *s, struct gather_point p, const struct brdf 
 /* Towards an emitter; keeps a pointer to it. False: it cannot light the point. */
 bool strategy_emitter(struct strategy *s, struct gather_point p, const struct emitter *emitter);
 
-/* A unit direction from two numbers in [0, 1). False: below the horizon; the sample counts as 0. */
+/* Four unit directions. */
+struct directions4 {
+    f64x4 x, y, z;
+};
+
+/* Four directions from two numbers in [0, 1) each; the result has a bit for each that is above the horizon. The others
+ * count as 0. */
+unsigned strategy_sample4(const struct strategy *s, f64x4 u, f64x4 v, struct directions4 *directions);
+/* The densities (1/sr) with which it chooses unit directions above the horizon. */
+f64x4 strategy_density4(const struct strategy *s, const struct directions4 *directions);
+
+/* Directions of `count` samples from points->sample on, at most a packet, by the first two numbers of a group: those
+ * above the horizon, one after another. Returns how many they are. points->sample is a multiple of RAY_PACKET. */
+int strategy_packet(const struct strategy *s, const struct sobol *points, uint32_t group, int count,
+                    struct vec3 directions[RAY_PACKET]);
+
+/* One of them, with the same bits; four take little longer. False: below the horizon. */
 bool strategy_sample(const struct strategy *s, const double u[2], struct vec3 *direction);
-/* The density (1/sr) with which strategy_sample() chooses a unit direction above the horizon. */
 double strategy_density(const struct strategy *s, struct vec3 direction);
 
 #endif

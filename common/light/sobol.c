@@ -4,11 +4,12 @@
  * Owen-scrambled permutation of the sample index; each dimension is then Owen-scrambled with a seed of its own. Owen
  * scrambling of a number is a hash in which each bit depends on higher bits only; the code keeps the points with their
  * bits reversed, where "higher" becomes "lower" and the hash is built of multiplications and additions [Laine 2011].
- * The result is reversed at the end. Differs from the source: the four dimensions are scrambled at once in a vector
- * register. */
+ * The result is reversed at the end. Differs from the source: the four dimensions of a sample, or eight samples, are
+ * scrambled at once in a vector register. */
 #include "common/light/sobol.h"
 
 #include "common/light/value_noise.h"
+#include "common/math/lanes.h"
 
 /* Direction numbers of [Joe 2008], dimensions 1 to 4, first 16 bits, bits reversed. */
 #define BITS 16
@@ -31,31 +32,23 @@ static const noise_u32x4 directions[BITS] = {
     {0x8000, 0xffff, 0xaa09, 0xa0c3},
 };
 
-/* The permutation of [Laine 2011], with constants by N. Vegdahl that scramble better. */
-static uint32_t scrambled(uint32_t x, uint32_t seed)
-{
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= seed >> 16 | 1;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    return x;
-}
-
-/* The same for four numbers at once, followed by the reversal of the bits. */
-static noise_u32x4 scrambled_reversed4(noise_u32x4 x, noise_u32x4 seed)
-{
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= seed >> 16 | 1;
-    x ^= x * 0x05526c56u;
-    x ^= x * 0x53a22864u;
-    x = (x >> 1 & 0x55555555u) | (x & 0x55555555u) << 1;
-    x = (x >> 2 & 0x33333333u) | (x & 0x33333333u) << 2;
-    x = (x >> 4 & 0x0f0f0f0fu) | (x & 0x0f0f0f0fu) << 4;
-    x = (x >> 8 & 0x00ff00ffu) | (x & 0x00ff00ffu) << 8;
-    return x >> 16 | x << 16;
-}
+/* The permutation of [Laine 2011], with constants by N. Vegdahl that scramble better; of a number or lanes. */
+#define SCRAMBLE(x, seed)        \
+    do {                         \
+        (x) ^= (x)*0x3d20adeau;  \
+        (x) += (seed);           \
+        (x) *= (seed) >> 16 | 1; \
+        (x) ^= (x)*0x05526c56u;  \
+        (x) ^= (x)*0x53a22864u;  \
+    } while (0)
+#define REVERSE_BITS(x)                                          \
+    do {                                                         \
+        (x) = ((x) >> 1 & 0x55555555u) | ((x)&0x55555555u) << 1; \
+        (x) = ((x) >> 2 & 0x33333333u) | ((x)&0x33333333u) << 2; \
+        (x) = ((x) >> 4 & 0x0f0f0f0fu) | ((x)&0x0f0f0f0fu) << 4; \
+        (x) = ((x) >> 8 & 0x00ff00ffu) | ((x)&0x00ff00ffu) << 8; \
+        (x) = (x) >> 16 | (x) << 16;                             \
+    } while (0)
 
 struct sobol sobol_make(const struct rng *rng, uint64_t pixel, int samples)
 {
@@ -64,15 +57,42 @@ struct sobol sobol_make(const struct rng *rng, uint64_t pixel, int samples)
     return (struct sobol){rng_u32(rng, pixel, 0), mask - 1, 0};
 }
 
+static const noise_u32x4 dimensions = {0x51633e2du, 0xa2c67c5au, 0xf429ba87u, 0x458cf8b4u};
+
+/* Sample indices beyond the mask belong to further sets, with other seeds. */
+static uint32_t seed_of(const struct sobol *s, uint32_t group)
+{
+    const uint32_t set = s->sample & ~s->mask;
+    return noise_mix(s->key ^ noise_mix(group + 0x68bc21ebu * (set + 1)));
+}
+
 void sobol_group(const struct sobol *s, uint32_t group, double u[4])
 {
-    /* sample indices beyond the mask belong to further sets, with other seeds */
-    const uint32_t set = s->sample & ~s->mask;
-    const uint32_t seed = noise_mix(s->key ^ noise_mix(group + 0x68bc21ebu * (set + 1)));
-    const uint32_t index = scrambled(s->sample & s->mask, noise_mix(seed + 0x9e3779b9u)) & s->mask;
-    const noise_u32x4 dimension = {0x51633e2du, 0xa2c67c5au, 0xf429ba87u, 0x458cf8b4u};
+    const uint32_t seed = seed_of(s, group), order = noise_mix(seed + 0x9e3779b9u);
+    const noise_u32x4 seeds = noise_mix4(seed + dimensions);
+    uint32_t index = s->sample & s->mask;
+    SCRAMBLE(index, order);
     noise_u32x4 x = {0, 0, 0, 0};
-    for (uint32_t left = index; left; left &= left - 1) x ^= directions[__builtin_ctz(left)];
-    x = scrambled_reversed4(x, noise_mix4(seed + dimension));
+    for (uint32_t left = index & s->mask; left; left &= left - 1) x ^= directions[__builtin_ctz(left)];
+    SCRAMBLE(x, seeds);
+    REVERSE_BITS(x);
     for (int d = 0; d < 4; d++) u[d] = x[d] * 0x1p-32;
+}
+
+void sobol_pairs(const struct sobol *s, uint32_t group, double u[2][SOBOL_BATCH])
+{
+    const uint32_t seed = seed_of(s, group), order = noise_mix(seed + 0x9e3779b9u);
+    const u32x8 steps = {0, 1, 2, 3, 4, 5, 6, 7};
+    u32x8 index = (s->sample + steps) & s->mask, x[2] = {{0}};
+    SCRAMBLE(index, order);
+    for (int bit = 0; s->mask >> bit & 1; bit++) {
+        const u32x8 has = -(index >> bit & 1);
+        for (int d = 0; d < 2; d++) x[d] ^= has & directions[bit][d];
+    }
+    for (int d = 0; d < 2; d++) {
+        const uint32_t own = noise_mix(seed + dimensions[d]);
+        SCRAMBLE(x[d], own);
+        REVERSE_BITS(x[d]);
+        for (int k = 0; k < SOBOL_BATCH; k++) u[d][k] = x[d][k] * 0x1p-32;
+    }
 }

@@ -24,4 +24,9 @@ struct sobol sobol_make(const struct rng *rng, uint64_t pixel, int samples);
  * numbers of different groups only each by itself. */
 void sobol_group(const struct sobol *s, uint32_t group, double u[4]);
 
+/* The first two numbers of a group, as sobol_group() gives them, of the samples s->sample, s->sample + 1, ...;
+ * s->sample is a multiple of SOBOL_BATCH. */
+enum { SOBOL_BATCH = 8 };
+void sobol_pairs(const struct sobol *s, uint32_t group, double u[2][SOBOL_BATCH]);
+
 #endif

@@ -125,6 +125,7 @@ static inline i32x8 i32x8_from_i16(const int16_t *p)
 
 static inline f64x4 f64x4_min(f64x4 a, f64x4 b) { return _mm256_min_pd(a, b); }
 static inline f64x4 f64x4_max(f64x4 a, f64x4 b) { return _mm256_max_pd(a, b); }
+static inline f64x4 f64x4_sqrt(f64x4 a) { return _mm256_sqrt_pd(a); }
 static inline f64x4 f64x4_floor(f64x4 a) { return _mm256_floor_pd(a); }
 static inline f64x4 f64x4_ceil(f64x4 a) { return _mm256_ceil_pd(a); }
 static inline f64x4 f64x4_if(i64x4 m, f64x4 a, f64x4 b) { return _mm256_blendv_pd(b, a, (__m256d)m); }
@@ -256,6 +257,7 @@ static inline f64x4 f64x4_where(i64x4 m, f64x4 a) { return (f64x4)(m & (i64x4)a)
 static inline f64x4 f64x4_if(i64x4 m, f64x4 a, f64x4 b) { return m >>= 63, (f64x4)(((i64x4)a & m) | ((i64x4)b & ~m)); }
 static inline f64x4 f64x4_min(f64x4 a, f64x4 b) { return f64x4_if(a < b, a, b); }
 static inline f64x4 f64x4_max(f64x4 a, f64x4 b) { return f64x4_if(a > b, a, b); }
+static inline f64x4 f64x4_sqrt(f64x4 a) { return (f64x4){sqrt(a[0]), sqrt(a[1]), sqrt(a[2]), sqrt(a[3])}; }
 static inline f64x4 f64x4_floor(f64x4 a) { return (f64x4){floor(a[0]), floor(a[1]), floor(a[2]), floor(a[3])}; }
 static inline f64x4 f64x4_ceil(f64x4 a) { return (f64x4){ceil(a[0]), ceil(a[1]), ceil(a[2]), ceil(a[3])}; }
 static inline unsigned i64x4_signs(i64x4 m)

@@ -224,21 +224,16 @@ static struct rgb gather(const struct transport *t, struct tally *tally, int *co
     struct strategy cosine;
     struct mixture lights;
     struct irradiance direct = {.rays = 0};
-    struct vec3 direction[RAY_PACKET];
     struct ray_job j = {.t = t, .tally = tally, .covered = covered, .point = p, .lights = &lights};
-    int waiting = 0;
     mixture_init(&lights, f, p, MIXTURE_LIGHTS);
     if (lights.count) mixture_gather(&direct, &lights, rays / DIRECT_SHARE, key, false);
     strategy_cosine(&cosine, p);
-    for (int i = 0; i < rays; i++) {
-        double u[4];
+    for (int i = 0; i < rays; i += RAY_PACKET) {
+        struct vec3 direction[RAY_PACKET];
+        const int most = rays - i < RAY_PACKET ? rays - i : RAY_PACKET;
         points.sample = (uint32_t)i;
-        sobol_group(&points, 0, u);
-        if (!strategy_sample(&cosine, u, &direction[waiting]) || ++waiting < RAY_PACKET) continue;
-        look(&j, f, direction, waiting);
-        waiting = 0;
+        look(&j, f, direction, strategy_packet(&cosine, &points, 0, most, direction));
     }
-    if (waiting) look(&j, f, direction, waiting);
     return rgb_add(direct.value, rgb_scale(j.fixed, PI / rays));
 }
 

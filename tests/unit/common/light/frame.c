@@ -13,6 +13,9 @@ static void cosine_and_sine_agree_with_libm(void **state)
         double c, s;
         fast_cos_sin(turns, &c, &s);
         assert_true(fabs(c - cos(2 * PI * turns)) < 1e-13 && fabs(s - sin(2 * PI * turns)) < 1e-13);
+        f64x4 c4, s4;
+        fast_cos_sin4((f64x4){0.3, 0.7, turns, 0.1}, &c4, &s4);
+        assert_true(c4[2] == c && s4[2] == s);
     }
 }
 

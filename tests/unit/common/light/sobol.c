@@ -101,6 +101,26 @@ static void samples_beyond_the_set_are_new_points(void **state)
     }
 }
 
+static void eight_at_a_time_are_the_same_numbers(void **state)
+{
+    (void)state;
+    const struct rng rng = rng_make(3, "test", "sobol");
+    for (int samples = 1; samples <= 64; samples *= 2) {
+        const struct sobol first = sobol_make(&rng, 7, samples);
+        for (uint32_t from = 0; from < 256; from += SOBOL_BATCH) {
+            struct sobol s = first;
+            double pairs[2][SOBOL_BATCH], u[4];
+            s.sample = from;
+            sobol_pairs(&s, 5, pairs);
+            for (int k = 0; k < SOBOL_BATCH && k < samples; k++) {
+                s.sample = from + (uint32_t)k;
+                sobol_group(&s, 5, u);
+                assert_true(pairs[0][k] == u[0] && pairs[1][k] == u[1]);
+            }
+        }
+    }
+}
+
 /* The integral of x^2 y over the unit square is 1/6. With 256 samples, independent numbers have an RMS error of
  * 0.0132. */
 static void integrals_converge_faster_than_with_independent_numbers(void **state)
@@ -132,6 +152,7 @@ int main(void)
         cmocka_unit_test(each_number_alone_is_uniform),
         cmocka_unit_test(pixels_and_groups_are_uncorrelated),
         cmocka_unit_test(samples_beyond_the_set_are_new_points),
+        cmocka_unit_test(eight_at_a_time_are_the_same_numbers),
         cmocka_unit_test(integrals_converge_faster_than_with_independent_numbers),
     };
     return cmocka_run_group_tests_name("light sobol", tests, NULL, NULL);

@@ -125,6 +125,9 @@ static void numbers_are_converted_and_rounded_exactly(void **state)
         ASSERT_SAME(out4, low);
         f64x4_store(out4, f64x4_ceil(f64x4_load(d)));
         ASSERT_SAME(out4, high);
+        EACH(k, 4) wide[k] = d[k] > 0 ? sqrt(d[k]) : 0;
+        f64x4_store(out4, f64x4_sqrt(f64x4_max(f64x4_load(d), (f64x4){0})));
+        ASSERT_SAME(out4, wide);
         EACH(k, 4) as_float[k] = (float)d[k];
         f32x4_store(out, f32x4_from_f64(f64x4_load(d)));
         assert_memory_equal(out, as_float, 16);
