@@ -23,6 +23,8 @@ void sky_init(struct sky *sky, const struct sky_params *params)
     sky->to_sun = vec3_make(cos(el) * cos(az), cos(el) * sin(az), sin(el));
     sky->sun_cos = cos(sun->angular_radius * PI / 180);
     sky->sun_radiance = sun->radiance;
+    if (params->panorama.has_shape)
+        sky->at_zenith = sky_shape_luminance(&params->panorama.shape, vec3_make(0, 0, 1), sky->to_sun);
 }
 
 /* Noise around the horizon, periodic in azimuth (`turn` 0..1): two periods are blended where they meet. */
@@ -76,9 +78,18 @@ static struct rgb panorama_radiance(const struct panorama *p, struct vec3 d)
     return rgb_mix(haze, rgb_grey(1.35 * bright), 0.4 * cloud);
 }
 
+static struct rgb shape_radiance(const struct sky *sky, struct vec3 d)
+{
+    const struct panorama *p = &sky->panorama;
+    if (!(d.z > 0)) return p->ground;
+    return rgb_scale(p->sky, sky_shape_luminance(&p->shape, d, sky->to_sun) / sky->at_zenith);
+}
+
 struct rgb sky_radiance(const struct sky *sky, struct vec3 direction)
 {
-    struct rgb c = sky->has_panorama ? panorama_radiance(&sky->panorama, direction) : rgb_grey(0);
+    struct rgb c = rgb_grey(0);
+    if (sky->has_panorama)
+        c = sky->panorama.has_shape ? shape_radiance(sky, direction) : panorama_radiance(&sky->panorama, direction);
     if (sky->has_sun && vec3_dot(direction, sky->to_sun) > sky->sun_cos) c = rgb_add(c, sky->sun_radiance);
     return c;
 }

@@ -49,12 +49,12 @@ static enum status drop_name(struct reader *r, const char *name, struct err *err
         sky->has_sun = false, r->sun_line = 0;
         return drop_line(r, line, err);
     }
-    if (!strcmp(name, "panorama") && sky->has_panorama && r->panorama_line) {
+    if (!strcmp(name, sky->panorama.has_shape ? "sky" : "panorama") && sky->has_panorama && r->panorama_line) {
         const int line = r->panorama_line;
         sky->has_panorama = false, r->panorama_line = 0;
         return drop_line(r, line, err);
     }
-    return textfile_error(&r->file, err, name, "the name of an item of the base, sun or panorama");
+    return textfile_error(&r->file, err, name, "the name of an item of the base, sun, sky or panorama");
 }
 
 enum status scene_read_drop(struct reader *r, struct err *err)

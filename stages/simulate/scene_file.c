@@ -1,6 +1,7 @@
 /* scene_file.c - see scene_file.h. Each kind of line has its own function; scene_reader.h lists them. */
 #include "stages/simulate/scene_file.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -28,6 +29,37 @@ static enum status read_panorama(struct reader *r, struct err *err)
     struct panorama *p = &r->scene->sky.panorama;
     if (r->scene->sky.has_panorama) return textfile_error(&r->file, err, "a second panorama", "at most one");
     if (!scene_read_seed(r, &p->seed, err) && !scene_read_colour(r, "the sky's radiance", MAX_RADIANCE, &p->sky, err) &&
+        !scene_read_colour(r, "the ground's radiance", MAX_RADIANCE, &p->ground, err))
+        textfile_end(&r->file, err);
+    r->scene->sky.has_panorama = !err->status;
+    if (r->in_base) r->panorama_line = r->file.line;
+    return err->status;
+}
+
+/* sky TYPE|perez A B C D E  R G B  R G B: in place of a panorama. */
+static enum status read_shape(struct reader *r, struct panorama *p, struct err *err)
+{
+    char *word;
+    double type = 0, *const numbers[] = {&p->shape.a, &p->shape.b, &p->shape.c, &p->shape.d, &p->shape.e};
+    p->has_shape = true;
+    if (textfile_word(&r->file, "a type of sky, 1 to 16, or perez", &word, err)) return err->status;
+    if (!strcmp(word, "perez")) {
+        for (int i = 0; !err->status && i < 5; i++)
+            textfile_number(&r->file, "a coefficient of the sky", -1000, 1000, numbers[i], err);
+        return err->status;
+    }
+    if (textfile_number_of(&r->file, word, "a type of sky", 1, SKY_TRADITIONAL, &type, err)) return err->status;
+    if (type != floor(type)) return textfile_wrong_number(&r->file, type, "a whole number", err);
+    p->shape = sky_standard_shape((int)type);
+    return ST_OK;
+}
+
+static enum status read_sky(struct reader *r, struct err *err)
+{
+    struct panorama *p = &r->scene->sky.panorama;
+    if (r->scene->sky.has_panorama) return textfile_error(&r->file, err, "a sky beside a panorama", "at most one");
+    *p = (struct panorama){.seed = 0};
+    if (!read_shape(r, p, err) && !scene_read_colour(r, "the zenith's radiance", MAX_RADIANCE, &p->sky, err) &&
         !scene_read_colour(r, "the ground's radiance", MAX_RADIANCE, &p->ground, err))
         textfile_end(&r->file, err);
     r->scene->sky.has_panorama = !err->status;
@@ -73,11 +105,12 @@ static enum status read_furniture(struct reader *r, struct err *err)
 
 static enum status read_line(struct reader *r, struct err *err)
 {
-    static const char *const words[] = {"texture", "material", "glow",   "sun", "panorama", "base", "drop", "furniture",
-                                        "wall",    "opening",  "window", "box", "quad",     "mesh", "room", "lamp"};
+    static const char *const words[] = {"texture", "material",  "glow", "sun",  "panorama", "base",
+                                        "drop",    "furniture", "sky",  "wall", "opening",  "window",
+                                        "box",     "quad",      "mesh", "room", "lamp"};
     static enum status (*const lines[])(struct reader *, struct err *) = {
-        scene_read_texture, scene_read_material, scene_read_glow, read_sun,
-        read_panorama,      read_base,           scene_read_drop, read_furniture};
+        scene_read_texture, scene_read_material, scene_read_glow, read_sun, read_panorama,
+        read_base,          scene_read_drop,     read_furniture,  read_sky};
     enum { LINES = sizeof lines / sizeof *lines, WORDS = sizeof words / sizeof *words, FIRST_OF_2 = 5 };
     int word = 0;
     scene_read_choice(r, words, WORDS, "a line of a scene", &word, err);
@@ -122,8 +155,8 @@ enum status scene_read(struct scene *s, const char *folder, const char *file, st
         err_set(err, ST_DATA, "%s/%s has no surfaces; add a room, a box or a quad.", folder, file);
     if (!err->status && !has_light(s))
         err_set(err, ST_DATA,
-                "%s/%s has no light: every photo would be black; add a lamp, a sun or a panorama with a positive "
-                "radiance.",
+                "%s/%s has no light: every photo would be black; add a lamp, a sun, a sky or a panorama with a "
+                "positive radiance.",
                 folder, file);
     if (err->status) scene_release(s);
     return err->status;

@@ -155,6 +155,12 @@ static void errors_of_edits_name_line_and_word(void **state)
     assert_invalid(EDIT "box c 0 0 0 1 1 1 m\ndrop c\n", ":4: found \"c\", wanted");
     assert_invalid(EDIT "box b 0 0 0 1 1 1 m\n", ":3: found \"b\", wanted a name that no other");
     assert_invalid(EDIT "drop l sun panorama\n", "has no light");
+    assert_invalid(EDIT "drop sky\n", "found \"sky\"");
+    assert_invalid(EDIT "sky 16 1 1 1 0 0 0\n", "found \"a sky beside a panorama\"");
+    assert_invalid(EDIT "drop panorama\nsky 17 1 1 1 0 0 0\n", "17");
+    assert_invalid(EDIT "drop panorama\nsky 1.5 1 1 1 0 0 0\n", "a whole number");
+    assert_invalid(EDIT "drop panorama\nsky grey 1 1 1 0 0 0\n", "grey");
+    assert_invalid(EDIT "drop panorama\nsky perez 1 1 1 0 0 0\n", "radiance");
     assert_invalid(EDIT "furniture maybe\n", ":3: found \"maybe\", wanted the state of furniture: one of off, on");
 }
 

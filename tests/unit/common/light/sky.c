@@ -119,6 +119,34 @@ static void panorama_has_no_seam(void **state)
     }
 }
 
+/* Skies of the CIE above a ground of their own: a horizontal surface has pi L under the uniform sky, and 7 pi / 9 of the
+ * zenith's luminance under the traditional overcast one, whose horizon has a third of it. */
+static void skies_of_the_cie_have_their_illuminance(void **state)
+{
+    enum { RINGS = 400, SECTORS = 32 };
+    static const int types[] = {SKY_UNIFORM, SKY_TRADITIONAL, SKY_CLEAR};
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct sky_params params = {.has_panorama = true, .panorama = {0, {2, 3, 4}, {0.5, 0.25, 1}, true, {0}}};
+        params.sun = (struct sun){30, 50, 0.27, {0, 0, 0}};
+        params.panorama.shape = sky_standard_shape(types[k]);
+        const struct sky sky = sky_of(&params);
+        double sum = 0;
+        for (int i = 0; i < RINGS; i++)
+            for (int s = 0; s < SECTORS; s++) {
+                const double up = sqrt((i + 0.5) / RINGS), turn = 360 * (s + 0.5) / SECTORS;
+                const struct vec3 d = direction(turn, asin(up) / DEGREE);
+                sum += PI * sky_radiance(&sky, d).g / (RINGS * SECTORS);
+            }
+        const double wanted[] = {3 * PI, 3 * 7 * PI / 9,
+                                 3 * sky_shape_illuminance(&params.panorama.shape, sky.to_sun) / sky.at_zenith};
+        assert_near(sum / wanted[k], 1, 2e-3);
+        assert_near(sky_radiance(&sky, vec3_make(0, 0, 1)).b, 4, 1e-9);
+        assert_near(sky_radiance(&sky, direction(77, -3)).r, 0.5, 1e-12);
+        if (types[k] == SKY_TRADITIONAL) assert_near(sky_radiance(&sky, direction(77, 1e-9)).g, 1, 1e-6);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -129,6 +157,7 @@ int main(void)
         cmocka_unit_test(radiance_is_linear_in_sky_and_ground),
         cmocka_unit_test(every_direction_has_a_finite_radiance),
         cmocka_unit_test(panorama_has_no_seam),
+        cmocka_unit_test(skies_of_the_cie_have_their_illuminance),
     };
     return cmocka_run_group_tests_name("light sky", tests, NULL, NULL);
 }
