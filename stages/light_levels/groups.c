@@ -58,8 +58,16 @@ enum status groups_make(struct light_groups *g, const struct model_field *field,
     g->sun = g->sky + windows;
     g->patch = g->sun + windows;
     g->beam = g->patch + parts;
-    g->count = g->beam + parts;
+    g->planned = g->count = g->beam + parts;
+    g->metre = 1;
     return ST_OK;
+}
+
+void groups_add_planned(struct light_groups *g, const struct planned_lamps *lamps, double metre)
+{
+    g->planned_lamps = lamps;
+    g->metre = metre;
+    g->count = g->planned + lamps->count;
 }
 
 void groups_release(struct light_groups *g)

@@ -33,6 +33,10 @@ static void put_groups(FILE *to, const struct light_groups *g, struct err *err)
         fprintf(to, "groups %d %d beams", groups_beam(g, w, 0), g->patches.count);
         put_name(to, g->windows[w].name, err);
     }
+    for (int i = g->planned; i < g->count; i++) {
+        fprintf(to, "group %d planned", i);
+        put_name(to, g->planned_lamps->list[i - g->planned].name, err);
+    }
 }
 
 static void put_points(FILE *to, const struct sensors *s, struct err *err)

@@ -8,6 +8,7 @@
 
 #include "common/base/log.h"
 
+enum { DIRECTIONS = 6 };
 enum { KEY_PATCHES = 1 << 28, KEY_POINTS = 1 << 29 };
 
 /* ---------------------------------------------------------------------------------------------------------- reading */
@@ -47,6 +48,33 @@ void level_scene_release(struct level_scene *s)
 const struct model_field *level_scene_field(const struct level_scene *s)
 {
     return s->edited ? &s->change.after : &s->alone;
+}
+
+bool level_scene_inside(const struct model_field *f, struct vec3 at)
+{
+    static const struct vec3 ways[DIRECTIONS] = {{1, 0.01, 0.02},  {-1, 0.02, 0.01}, {0.01, 1, 0.02},
+                                                 {0.02, -1, 0.01}, {0.01, 0.02, 1},  {0.02, 0.01, -1}};
+    int backs = 0;
+    for (int i = 0; i < DIRECTIONS; i++) {
+        struct ray_hit hit;
+        backs += ray_scene_hit(&f->model.rays, at, ways[i], &hit) && !hit.front;
+    }
+    return 2 * backs > DIRECTIONS;
+}
+
+/* A lamp may lie in the surface that it hangs from, as deep as photographed ones. */
+static enum status check_planned(const struct level_scene *s, const struct model_field *field, struct err *err)
+{
+    for (int i = 0; s->planned && i < s->planned->count; i++) {
+        const struct planned_lamp *l = &s->planned->list[i];
+        const struct vec3 at = vec3_add(l->at, vec3_scale(l->down, 2 * field->reach));
+        if (!model_rays_near(&field->model, l->at) || level_scene_inside(field, at))
+            return err_set(err, ST_DATA,
+                           "line %d of states.txt: the lamp %s at %g %g %g lies inside of a wall or outdoors; give "
+                           "another place, in the frame of the plan.",
+                           l->line, l->name, l->at.x, l->at.y, l->at.z);
+    }
+    return ST_OK;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- patches */
@@ -124,8 +152,9 @@ enum status level_light_make(struct level_light *l, const struct level_scene *s,
     patch_owner_fn *owner = s->edited ? new_owner : old_owner;
     const void *ctx = s->edited ? (const void *)&s->change : &s->furniture;
     *l = (struct level_light){.bounded = 0};
-    if (groups_make(&l->groups, field, true, err) ||
-        patches_make(&l->patches, field, params->patches, owner, ctx, err) ||
+    if (groups_make(&l->groups, field, true, err)) return err->status;
+    if (s->planned) groups_add_planned(&l->groups, s->planned, s->metre.units);
+    if (check_planned(s, field, err) || patches_make(&l->patches, field, params->patches, owner, ctx, err) ||
         trace_patches(&l->rows, &l->groups, &l->patches, params, "light of patches", err))
         return err->status;
     l->colours = calloc((size_t)l->patches.count + 1, sizeof *l->colours);

@@ -3,6 +3,7 @@
 #define REMODEL_LEVEL_SCENE_H
 
 #include "stages/light_levels/colours.h"
+#include "stages/light_levels/level_metre.h"
 #include "stages/light_levels/levels_params.h"
 
 /* {0} is the empty state; everything but the paths is owned. It must not move once it was read. */
@@ -13,6 +14,8 @@ struct level_scene {
     struct field_surfaces surfaces;
     struct model_axes axes;
     bool edited;
+    struct level_metre metre;
+    const struct planned_lamps *planned; /* not owned; NULL: none */
 };
 
 /* files->edited NULL: the unedited room. Furniture counts in both. The caller releases s in each case. ST_DATA: a
@@ -20,6 +23,9 @@ struct level_scene {
 enum status level_scene_read(struct level_scene *s, const struct light_change_files *files, struct provenance *prov,
                              struct err *err);
 void level_scene_release(struct level_scene *s);
+
+/* Whether a point is inside of something: most rays from it meet the backs of surfaces. */
+bool level_scene_inside(const struct model_field *f, struct vec3 at);
 
 /* The room after the edit, or the unedited one. */
 const struct model_field *level_scene_field(const struct level_scene *s);
@@ -34,7 +40,8 @@ struct level_light {
     int bounded; /* patches of faces whose reflectance is that of their face */
 };
 
-/* The caller releases l in each case. Same bits for any number of threads. */
+/* The caller releases l in each case. Same bits for any number of threads. ST_DATA: a planned lamp inside of a wall or
+ * outdoors. */
 enum status level_light_make(struct level_light *l, const struct level_scene *s, const struct levels_params *params,
                              struct err *err);
 void level_light_release(struct level_light *l);

@@ -2,10 +2,14 @@
  *
  * Intervals. The mean of an area has two errors, taken as independent and lognormal: that of the scale from the
  * photographs' unit to cd/m2 (lux_scale.h), which counts for light of the photographs alone, and that of the model, its
- * textures and the rays, [light_levels] error. The interval is 95 % of their product. */
+ * textures and the rays, [light_levels] error. The interval is 95 % of their product. Where a metre is a guess, light of
+ * planned lamps goes with its square, and the work plane's interval holds those of planes at both ends of the guess.
+ * Figures of a year are counted again in rooms that are darker and brighter by the model's error; the interval reaches
+ * from the least to the most of them. The weather is taken as it is. */
 #include "stages/light_levels/level_sheet.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -36,6 +40,11 @@ static bool begin_reading(struct reading *r, const struct levels_job *j, const s
         const double d = log(k ? scale->high / scale->scale : scale->scale / scale->low) / NORMAL_95;
         variance[k] += d * d;
     }
+    const struct level_metre *metre = &j->scene.metre;
+    for (int k = 0; metre->guessed && w->has_planned && k < 2; k++) {
+        const double d = 2 * log(k ? metre->high / metre->units : metre->units / metre->low) / NORMAL_95;
+        variance[k] += d * d;
+    }
     r->low = exp(-NORMAL_95 * sqrt(variance[0]));
     r->high = exp(NORMAL_95 * sqrt(variance[1]));
     return true;
@@ -43,11 +52,40 @@ static bool begin_reading(struct reading *r, const struct levels_job *j, const s
 
 /* ------------------------------------------------------------------------------------------------------------ areas */
 
+static double mean_of(const double *values, const struct sensor_area *a)
+{
+    double sum = 0;
+    for (int i = 0; i < a->count; i++) sum += values[a->first + i];
+    return sum / a->count;
+}
+
+/* Planes that stand for the ends of a guess have no rows. */
+static bool is_hidden(const struct sensor_area *a)
+{
+    return a->kind == SENSOR_WORK_PLANE_LOW || a->kind == SENSOR_WORK_PLANE_HIGH;
+}
+
+/* Widens the range [low, high] of an area's mean to those of the planes at the ends of the guess. */
+static void widen(double ends[2], const struct levels_job *j, int area, const double *values, double low, double high)
+{
+    const struct sensor_area *a = &j->sensors.areas[area];
+    if (a->kind != SENSOR_WORK_PLANE) return;
+    for (int i = area + 1; i < j->sensors.area_count && is_hidden(&j->sensors.areas[i]); i++) {
+        const double mean = mean_of(values, &j->sensors.areas[i]);
+        ends[0] = fmin(ends[0], low * mean);
+        ends[1] = fmax(ends[1], high * mean);
+    }
+}
+
 static enum status add_areas(struct levels_job *j, const struct reading *r, const double *values, struct err *err)
 {
     for (int i = 0; !err->status && i < j->sensors.area_count; i++) {
         const struct sensor_area *a = &j->sensors.areas[i];
-        const struct sheet_values of = {values + a->first, NULL, a->count, r->low, r->high};
+        const double mean = mean_of(values, a);
+        double ends[2] = {r->low * mean, r->high * mean};
+        if (is_hidden(a)) continue;
+        widen(ends, j, i, values, r->low, r->high);
+        const struct sheet_values of = {values + a->first, NULL, a->count, 0, 0, r->high > 0 ? ends : NULL};
         sheet_add(&j->sheet, r->name, sensor_kind_word(a->kind), a->name, r->unit, &of, err);
     }
     return err->status;
@@ -83,7 +121,7 @@ static enum status add_faces(struct levels_job *j, const struct reading *r, cons
             values[count] = r->factors[0] * sums[k][0] + r->factors[1] * sums[k][1];
             areas[count++] = p->list[k].area;
         }
-        const struct sheet_values of = {values, areas, count, r->low, r->high};
+        const struct sheet_values of = {values, areas, count, r->low, r->high, NULL};
         sheet_add(&j->sheet, r->name, "face", name, r->unit, &of, err);
     }
     free(sums);
@@ -121,8 +159,8 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
     if (!level_weights_make(&w, state, &j->states, &j->light.groups, &j->params, err)) {
         if (!begin_reading(&r, j, state, &w)) {
             log_warn(
-                "the state %s has lamps and a sky that was not photographed; their sum needs lux/scale.txt, and is "
-                "left out. Measure a point (lux.txt), or say `lamps off`.",
+                "the state %s has lamps of the photographs and a sky or a lamp that was not photographed; their sum "
+                "needs lux/scale.txt, and is left out. Measure a point (lux.txt), or say `lamps off`.",
                 state->name);
         } else {
             for (int i = 0; i < j->sensors.count; i++) {
@@ -170,19 +208,49 @@ static double annual_value(int which, const struct daylight_point *p)
     }
 }
 
+enum { SUN_HOURS = ANNUAL - 1 }; /* how bright the room is does not change them */
+
+/* Rows of one figure. values: of the points, scratch. */
+static enum status add_annual(struct levels_job *j, int which, const struct daylight_point *counts, double *values,
+                              struct err *err)
+{
+    const int points = j->sensors.count, areas = j->sensors.area_count;
+    double(*ends)[2] = malloc(((size_t)areas + 1) * sizeof *ends);
+    if (!ends) return err_nomem(err, "areas", (size_t)areas * sizeof *ends);
+    for (int level = LEVEL_YEARS - 1; level >= 0; level--) { /* the last one is that of the room as it is */
+        for (int i = 0; i < points; i++)
+            values[i] = annual_value(which, &counts[(size_t)level * (size_t)points + (size_t)i]);
+        for (int i = 0; i < areas; i++) {
+            const double mean = mean_of(values, &j->sensors.areas[i]);
+            if (level == LEVEL_YEARS - 1) ends[i][0] = ends[i][1] = mean;
+            ends[i][0] = fmin(ends[i][0], mean);
+            ends[i][1] = fmax(ends[i][1], mean);
+            widen(ends[i], j, i, values, 1, 1);
+        }
+    }
+    for (int i = 0; !err->status && i < areas; i++) {
+        const struct sensor_area *a = &j->sensors.areas[i];
+        const struct sheet_values of = {values + a->first, NULL, a->count, 0, 0, which == SUN_HOURS ? NULL : ends[i]};
+        if (!is_hidden(a))
+            sheet_add(&j->sheet, annual[which].name, sensor_kind_word(a->kind), a->name, annual[which].unit, &of, err);
+    }
+    free(ends);
+    return err->status;
+}
+
 static enum status add_year(struct levels_job *j, double *values, struct err *err)
 {
-    struct daylight_point *counts = calloc((size_t)j->sensors.count + 1, sizeof *counts);
+    const size_t size = LEVEL_YEARS * (size_t)j->sensors.count;
+    struct daylight_point *counts = calloc(size + 1, sizeof *counts);
     int hours;
-    if (!counts) return err_nomem(err, "points", (size_t)j->sensors.count * sizeof *counts);
+    if (!counts) return err_nomem(err, "points", size * sizeof *counts);
     level_year_count(counts, &hours, &j->levels, &j->light, &j->weather, j->states.north, &j->params, err);
     if (!err->status && hours < DAYLIGHT_HOURS)
         log_warn("%s has %d of the %d hours from %d to %d o'clock; the figures of the year are those of these.",
                  j->files.weather, hours, DAYLIGHT_HOURS, DAYLIGHT_FROM, DAYLIGHT_TO);
     for (int k = 0; !err->status && k < ANNUAL; k++) {
         const struct reading r = {annual[k].name, annual[k].unit, {0, 0}, 0, 0};
-        for (int i = 0; i < j->sensors.count; i++) values[i] = annual_value(k, &counts[i]);
-        if (!add_areas(j, &r, values, err) && k == 2) draw(j, &r, values, err);
+        if (!add_annual(j, k, counts, values, err) && k == 2) draw(j, &r, values, err);
     }
     free(counts);
     return err->status;
@@ -190,12 +258,19 @@ static enum status add_year(struct levels_job *j, double *values, struct err *er
 
 enum status level_sheet_make(struct levels_job *j, struct err *err)
 {
+    const struct level_metre *metre = &j->scene.metre;
     char path[FILE_PATH];
     double *values = malloc(((size_t)j->sensors.count + 1) * sizeof *values);
     if (!values) return err_nomem(err, "points", (size_t)j->sensors.count * sizeof *values);
     for (int i = 0; !err->status && i < j->states.count; i++) add_state(j, i, values, err);
     if (!err->status && j->files.weather) add_year(j, values, err);
     free(values);
+    if (metre->guessed)
+        snprintf(j->sheet.note, sizeof j->sheet.note,
+                 "no scale is known: a metre is a guess, %.3g units of the model (%.3g to %.3g), by rooms %g m high "
+                 "(%g to %g); it sets the work plane and the distances of points",
+                 metre->units, metre->low, metre->high, j->params.room_height, level_metre_heights[0],
+                 level_metre_heights[1]);
     if (err->status || product_path_in(path, j->out, PRODUCT_LIGHT_SHEET, &(struct product_key){0}, err))
         return err->status;
     return sheet_write(&j->sheet, j->files.before ? &j->before : NULL, path, &j->prov, err);

@@ -82,11 +82,18 @@ enum status level_lamps_check(const struct state_list *states, const struct ligh
 {
     for (int i = 0; i < states->count; i++)
         for (int k = 0; k < states->items[i].named_count; k++)
-            if (find_lamp(lights, states->items[i].named[k].name) < 0)
-                return err_set(
-                    err, ST_DATA,
-                    "%s:%d: found the lamp %s, which the scene does not have; wanted one of lights/lights.txt.",
-                    states->path, states->items[i].line, states->items[i].named[k].name);
+            if (find_lamp(lights, states->items[i].named[k].name) < 0 &&
+                planned_lamps_find(&states->planned, states->items[i].named[k].name) < 0)
+                return err_set(err, ST_DATA,
+                               "%s:%d: found the lamp %s, which the scene does not have; wanted one of "
+                               "lights/lights.txt, or of the lines `lamp NAME ies FILE` of this file.",
+                               states->path, states->items[i].line, states->items[i].named[k].name);
+    for (int i = 0; i < states->planned.count; i++)
+        if (find_lamp(lights, states->planned.list[i].name) >= 0)
+            return err_set(err, ST_DATA,
+                           "%s:%d: found the planned lamp %s; lights/lights.txt has a lamp of that name, so give it "
+                           "another one.",
+                           states->path, states->planned.list[i].line, states->planned.list[i].name);
     return ST_OK;
 }
 
@@ -97,8 +104,13 @@ static void set_lamps(struct state_weights *w, const struct light_state *s, cons
     w->relative[g->rest] = s->lamps;
     for (int k = 0; k < s->named_count; k++) {
         const int lamp = find_lamp(l, s->named[k].name);
+        const int planned = g->planned_lamps ? planned_lamps_find(g->planned_lamps, s->named[k].name) : -1;
         if (lamp >= 0) w->relative[lamp] = s->named[k].factor;
+        if (planned < 0) continue;
+        w->absolute[g->planned + planned] = s->named[k].factor;
+        w->has_planned |= s->named[k].factor > 0;
     }
+    w->has_absolute |= w->has_planned;
 }
 
 enum status level_weights_make(struct state_weights *w, const struct light_state *state,
@@ -117,6 +129,10 @@ enum status level_weights_make(struct state_weights *w, const struct light_state
     } else if (state->sky == STATE_SKY_TIME) {
         sun_position_find(&sun, &states->site, &state->time);
         sky = sky_of_cover(state->cover, &sun, states->north, params->ground);
+        level_weights_add_sky(w, &sky, groups, params);
+    } else if (state->sky == STATE_SKY_WEATHER) {
+        sun_position_find(&sun, &state->place, &state->time);
+        sky = sky_from_weather(&state->weather, &sun, states->north, params->ground);
         level_weights_add_sky(w, &sky, groups, params);
     }
     for (int i = 0; i < groups->count; i++) w->has_relative |= w->relative[i] > 0;
@@ -140,7 +156,7 @@ enum status level_points_make(struct level_points *p, const struct level_light *
         const int group = (int)(i % (size_t)g->count);
         p->direct[i] = luminance_of(direct.direct + 3 * i);
         p->whole[i] = luminance_of(found + 3 * i);
-        if (group >= g->beam) p->whole[i] = fmaxf(0, p->whole[i] - p->direct[i]);
+        if (group >= g->beam && group < g->planned) p->whole[i] = fmaxf(0, p->whole[i] - p->direct[i]);
     }
     free(found);
     rows_release(&direct);

@@ -10,6 +10,7 @@
 struct state_weights {
     double *relative, *absolute;
     bool has_relative, has_absolute; /* some weight is not 0 */
+    bool has_planned;                /* so is that of a planned lamp */
     struct vec3 to_sun;
     double sun; /* lx on a surface that faces it, within the panes; 0: none */
 };

@@ -2,9 +2,13 @@
  *
  * Each hour has the sky of its irradiances [Perez 1993] and the sun where it is in the middle of the hour. What the sky
  * and reflected sun bring is a sum over groups; the sun's direct light is a ray from the point. Blinds are not
- * drawn. */
+ * drawn.
+ *
+ * Years of rooms that are brighter and darker by the error of the model are counted beside it. That error is mostly one
+ * for a whole room, a wall too dark or a window too large, so all hours and points are multiplied by the same factor. */
 #include "stages/light_levels/level_year.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,11 +27,14 @@ static void index_hours(int of_hour[DAYLIGHT_DAYS * DAY], const struct weather *
     }
 }
 
+const double level_year_sigmas[LEVEL_YEARS] = {0, -1.959964, -1, 1, 1.959964};
+
 struct hour_job {
     const struct level_points *points;
     const struct level_light *light;
     const struct state_weights *w;
     struct daylight_point *counts;
+    double factors[LEVEL_YEARS];
 };
 
 static void count_some(void *ctx, size_t begin, size_t end, int thread)
@@ -40,7 +47,9 @@ static void count_some(void *ctx, size_t begin, size_t end, int thread)
         double sums[2], sun = 0;
         level_points_sum(sums, j->points, (int)i, j->w, NULL);
         if (j->w->sun > 0 && rows_sees_sun(field, p, j->w->to_sun)) sun = j->w->sun * vec3_dot(p.normal, j->w->to_sun);
-        daylight_point_add(&j->counts[i], sums[1] + sun, sun);
+        for (int k = 0; k < LEVEL_YEARS; k++)
+            daylight_point_add(&j->counts[(size_t)k * (size_t)j->points->count + i], j->factors[k] * (sums[1] + sun),
+                               j->factors[k] * sun);
     }
 }
 
@@ -52,15 +61,16 @@ enum status level_year_count(struct daylight_point *counts, int *hours, const st
     struct state_weights w = {0};
     const size_t size = (size_t)light->groups.count * sizeof *w.absolute;
     *hours = 0;
-    memset(counts, 0, (size_t)points->count * sizeof *counts);
+    memset(counts, 0, LEVEL_YEARS * (size_t)points->count * sizeof *counts);
     index_hours(of_hour, weather);
     level_weights_init(&w, &light->groups, err);
     for (int k = 0; !err->status && k < DAYLIGHT_HOURS; k++) {
         const struct daylight_hour hour = daylight_hour(k);
         const int record = of_hour[(sun_day_of_year(hour.month, hour.day) - 1) * DAY + (int)hour.middle];
-        struct hour_job j = {points, light, &w, counts};
+        struct hour_job j = {points, light, &w, counts, {0}};
         struct sun_position sun;
         if (record < 0) continue;
+        for (int i = 0; i < LEVEL_YEARS; i++) j.factors[i] = exp(level_year_sigmas[i] * params->error);
         memset(w.absolute, 0, size);
         sun_position_find(&sun, &weather->at, &weather->hours[record].middle);
         const struct sky_luminance sky = sky_from_weather(&weather->hours[record].sky, &sun, north, params->ground);

@@ -7,14 +7,11 @@
  * lamps and sky, daylight factors, hours of a year. */
 #include "stages/light_levels/levels.h"
 
-#include <stdio.h>
-#include <stdlib.h>
-
 #include "common/base/log.h"
-#include "common/light/surface_points.h"
 #include "common/product/product.h"
 #include "stages/light_levels/level_file.h"
 #include "stages/light_levels/level_sheet.h"
+#include "stages/light_levels/level_table.h"
 #include "stages/light_levels/quantities.h"
 
 void levels_release(struct levels_job *j)
@@ -33,43 +30,6 @@ void levels_release(struct levels_job *j)
     provenance_release(&j->prov);
 }
 
-/* ----------------------------------------------------------------------------------------------------- given points */
-
-/* Irradiance of the photographed state at points in the frame of the scene: lines X Y Z NX NY NZ R G B on stdout. */
-static enum status print_points(struct levels_job *j, struct err *err)
-{
-    struct surface_points list = {0};
-    struct gather_point *points = NULL;
-    struct light_rows direct = {0};
-    float *found = NULL;
-    const struct light_groups *g = &j->light.groups;
-    if (!surface_points_read(&list, j->files.points, err)) {
-        points = malloc(((size_t)list.count + 1) * sizeof *points);
-        if (!points) err_nomem(err, "points", (size_t)list.count * sizeof *points);
-    }
-    for (int i = 0; !err->status && i < list.count; i++) {
-        points[i] =
-            (struct gather_point){model_from_world_point(&j->scene.axes, list.list[i].at),
-                                  vec3_normalize(model_from_world_direction(&j->scene.axes, list.list[i].normal))};
-        model_field_lift(level_scene_field(&j->scene), &points[i],
-                         0.02 * model_rays_size(&level_scene_field(&j->scene)->model));
-    }
-    if (!err->status) level_light_at(&found, &direct, &j->light, points, list.count, &j->params, err);
-    for (int i = 0; !err->status && i < list.count; i++) {
-        double sum[3] = {0, 0, 0};
-        for (int k = 0; k < 3 * g->patch; k++)
-            sum[k % 3] += (double)found[3 * (size_t)g->count * (size_t)i + (size_t)k];
-        const struct surface_point *p = &list.list[i];
-        printf("%.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", p->at.x, p->at.y, p->at.z, p->normal.x, p->normal.y,
-               p->normal.z, sum[0], sum[1], sum[2]);
-    }
-    free(found);
-    rows_release(&direct);
-    free(points);
-    surface_points_release(&list);
-    return err->status;
-}
-
 /* -------------------------------------------------------------------------------------------------------------- all */
 
 static enum status read_inputs(struct levels_job *j, struct err *err)
@@ -79,13 +39,20 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
     if (f->before && sheet_read(&j->before, f->before, &j->prov, err)) return err->status;
     if (f->scale && lux_scale_read(&j->scale, f->scale, &j->prov, err)) return err->status;
     if (f->weather && weather_read(&j->weather, f->weather, &j->prov, err)) return err->status;
-    if (state_list_read(&j->states, f->states, &j->prov, err) || model_plan_read(&j->plan, f->plan, &j->prov, err) ||
-        level_scene_read(&j->scene, &f->light, &j->prov, err) ||
-        level_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err))
+    if (state_list_read(&j->states, f->states, &j->prov, err) ||
+        state_list_take_weather(&j->states, f->weather ? &j->weather : NULL, err) ||
+        model_plan_read(&j->plan, f->plan, &j->prov, err) || level_scene_read(&j->scene, &f->light, &j->prov, err) ||
+        level_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err) ||
+        level_metre_find(&j->scene.metre, &j->scene.axes, &j->plan, &j->params, err))
         return err->status;
-    if (!j->scene.axes.metric)
-        log_warn("the scene has no scale: distances of points and the height of the work plane are in its own unit. "
-                 "Give the scale as docs/model-script.md explains.");
+    j->scene.planned = &j->states.planned;
+    if (j->scene.metre.guessed)
+        log_warn("the scene has no scale, so that a metre is a guess: %.3g units (%.3g to %.3g), by rooms %g m high "
+                 "(%g to %g). It sets the work plane and the distances of points%s. Give the scale as "
+                 "docs/model-script.md explains.",
+                 j->scene.metre.units, j->scene.metre.low, j->scene.metre.high, j->params.room_height,
+                 level_metre_heights[0], level_metre_heights[1],
+                 j->states.planned.count ? ", and how bright planned lamps are" : "");
     return ST_OK;
 }
 
@@ -105,8 +72,9 @@ static enum status write_others(struct levels_job *j, struct err *err)
 enum status levels_run(struct levels_job *j, struct err *err)
 {
     if (read_inputs(j, err) || level_light_make(&j->light, &j->scene, &j->params, err)) return err->status;
-    if (j->files.points) return print_points(j, err);
-    if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, err) ||
+    if (j->files.points) return j->files.table ? level_table_print_states(j, err) : level_table_print(j, err);
+    if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, &j->scene.metre,
+                     err) ||
         level_points_make(&j->levels, &j->light, j->sensors.points, j->sensors.count, &j->params, err) ||
         write_others(j, err))
         return err->status;

@@ -11,6 +11,7 @@
 struct levels_files {
     struct light_change_files light;
     const char *plan, *places, *states, *weather, *points, *before, *scale;
+    bool table; /* of `points`: all states */
 };
 
 /* Everything but the paths is owned. */

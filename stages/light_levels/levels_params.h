@@ -12,6 +12,8 @@
     X(spacing, double, 0.5, 0.05, 10, "m", "distance of the points on a work plane or floor")                         \
     X(margin, double, 0.5, 0, 10, "m", "distance of these points from the walls")                                     \
     X(work_plane, double, 0.75, 0.05, 3, "m", "height of the work plane above the floor")                             \
+    X(room_height, double, 2.5, 1.5, 10, "m",                                                                         \
+      "height of rooms by which a metre is guessed in a scene without a scale; those of homes are 2.2 to 3.2")        \
     X(glass, double, 0.8, 0.01, 1, "",                                                                                \
       "part of the light that the panes let through, for skies other than the photographed one, which has it")        \
     X(ground, double, 0.2, 0, 1, "", "reflectance of the ground outdoors, for skies other than the photographed one") \

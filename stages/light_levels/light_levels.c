@@ -6,6 +6,7 @@
  *         THINGS/things.txt, volume.exr       furniture
  *         EDITED, MAP, OBJECTS, SCENE/FILE.obj of an edit: its model, textures and objects
  *         PLACES, STATES, WEATHER             named places; states of lamps and sky; an EPW file
+ *         FILE.ies beside STATES              photometry of planned lamps
  *         SCALE                               how many cd/m2 a radiance of 1 is
  *         BEFORE                              the sheet of the unedited room
  * writes  OUT/levels.txt, levels.exr          illuminance at each point from each group of light
@@ -47,6 +48,7 @@ int main(int argc, char **argv)
         CLI_STR("before", &job.files.before, CLI_OPTIONAL, "sheet.tsv of the unedited room, to compare with"),
         CLI_STR("points", &job.files.points, CLI_OPTIONAL,
                 "instead: print the photographed irradiance at points, X Y Z NX NY NZ a line, in the views' frame"),
+        CLI_FLAG("table", &job.files.table, "with --points: print their illuminance in each state instead"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write to"),
         CLI_PARAMS(levels_param_table, &job.params, NULL),
         CLI_END,

@@ -10,7 +10,8 @@
  * other hours is a direction: a ray to it from each place.
  *
  * A lamp's irradiance has a closed form (lamp.c), times the share of it that a place sees: shadow rays to places spread
- * over the lamp, weighted by the light that each sends.
+ * over the lamp, weighted by the light that each sends. Of a planned lamp each such place brings its part of the light,
+ * by the photometry of its maker.
  *
  * Every row has random numbers of its own, so that its bits do not depend on threads. */
 #include "stages/light_levels/rows.h"
@@ -307,6 +308,29 @@ static void light_by_lamps(const struct source *s, int rays)
     }
 }
 
+static void light_by_planned(const struct source *s, int rays)
+{
+    const struct light_groups *g = s->job->groups;
+    for (int i = 0; g->planned_lamps && i < g->planned_lamps->count; i++) {
+        const struct planned_lamp *l = &g->planned_lamps->list[i];
+        const int count = planned_lamp_is_wide(l) ? rays : 1;
+        struct sobol points = sobol_make(&s->rng, 4000 + (uint64_t)i, count);
+        double sum = 0;
+        for (int k = 0; k < count; k++) {
+            double u[4] = {0.5, 0.5, 0, 0};
+            points.sample = (uint32_t)k;
+            if (count > 1) sobol_group(&points, 3, u);
+            const struct vec3 place = planned_lamp_place(l, u, g->metre), to = vec3_sub(place, s->from);
+            const double lux = planned_lamp_illuminance(l, place, s->point.at, s->point.normal, g->metre);
+            const double distance = vec3_length(to), reach = distance - g->field->reach;
+            if (!(lux > 0)) continue;
+            if (!(reach > 0) || !ray_scene_blocked(&g->field->model.rays, s->from, vec3_scale(to, 1 / distance), reach))
+                sum += lux / count;
+        }
+        if (sum > 0) add_direct(s, g->planned + i, rgb_scale(l->colour, sum * s->weight));
+    }
+}
+
 /* ------------------------------------------------------------------------------------------------------------- rows */
 
 static int compare_ints(const void *a, const void *b)
@@ -346,6 +370,7 @@ static void trace_row(struct job *j, size_t i, int thread)
         trace_suns(&s);
         if (j->groups->beam > j->groups->patch) trace_beams(&s);
         light_by_lamps(&s, LAMP_RAYS / place->count);
+        light_by_planned(&s, LAMP_RAYS / place->count);
     }
     finish_row(row, &j->scratch[thread], &j->errors[thread]);
 }

@@ -19,7 +19,6 @@ static void say_scripts(struct graph *g, const struct scene_facts *f)
 {
     static const char *const names[] = {"places", "states"};
     const char *scale = PATH(g, LUX_SCALE);
-    (void)f;
     for (int i = 0; i < 2; i++) {
         const char *path = graph_scene_file(g, graph_text(g, "%s.txt", names[i]));
         if (path) rule_takes(g, graph_text(g, "--%s", names[i]), path);
@@ -29,6 +28,10 @@ static void say_scripts(struct graph *g, const struct scene_facts *f)
     const bool scaled = graph_scene_file(g, "lux.txt") || path_is_file(scale);
     if (scaled) rule_takes(g, "--scale", scale);
     rule_needs(g, graph_stamp(g, "lux_scale.txt", scaled ? scale : "none"));
+    struct name_list webs = {0}; /* that states.txt may name */
+    name_list_add_files(&webs, f->folder, "", ".ies", graph_err(g));
+    for (int i = 0; i < webs.count; i++) rule_needs(g, graph_text(g, "%s/%s.ies", f->folder, webs.names[i]));
+    name_list_release(&webs);
     rule_needs(g, graph_stamp(g, "weather.txt", scene_setting("WEATHER")));
     if (*scene_setting("WEATHER")) rule_variable(g, "--weather", "WEATHER");
 }

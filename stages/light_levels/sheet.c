@@ -35,7 +35,7 @@ static enum status add_row(struct light_sheet *s, const char *state, const char 
 {
     if (array_append(&s->rows, (size_t)s->count, sizeof *s->rows, "rows", err)) return err->status;
     struct sheet_row *r = &s->rows[s->count];
-    *r = (struct sheet_row){strdup(state), strdup(kind), strdup(place), strdup(unit), 0, 0, 0, 0, 0, 0};
+    *r = (struct sheet_row){strdup(state), strdup(kind), strdup(place), strdup(unit), 0, 0, 0, 0, false, 0, 0};
     s->count++;
     return r->state && r->kind && r->place && r->unit ? ST_OK : err_nomem(err, "names", strlen(place));
 }
@@ -55,8 +55,9 @@ enum status sheet_add(struct light_sheet *s, const char *state, const char *kind
     struct sheet_row *r = &s->rows[s->count - 1];
     r->points = of->count;
     r->mean = sum / weight;
-    r->low = (of->high > 0 ? of->low : 1) * r->mean;
-    r->high = (of->high > 0 ? of->high : 1) * r->mean;
+    r->has_interval = of->ends || of->high > 0;
+    r->low = of->ends ? of->ends[0] : r->has_interval ? of->low * r->mean : r->mean;
+    r->high = of->ends ? of->ends[1] : r->has_interval ? of->high * r->mean : r->mean;
     r->least = least;
     r->most = most;
     return ST_OK;
@@ -82,7 +83,7 @@ static const struct sheet_row *find_row(const struct light_sheet *s, const struc
 static void put_row(FILE *to, const struct sheet_row *r, const struct light_sheet *before)
 {
     fprintf(to, "%s\t%s\t%s\t%d\t%.4g", r->state, r->kind, r->place, r->points, r->mean);
-    if (r->high > r->low)
+    if (r->has_interval)
         fprintf(to, "\t%.4g\t%.4g", r->low, r->high);
     else
         fprintf(to, "\t-\t-");
@@ -103,6 +104,7 @@ enum status sheet_write(const struct light_sheet *s, const struct light_sheet *b
     struct outfile f = {0};
     if (product_begin(&f, PRODUCT_LIGHT_SHEET, path, prov, err)) return err->status;
     const locale_t was = uselocale(scan_c_locale());
+    if (*s->note) fprintf(f.fp, "# %s\n", s->note);
     for (int i = 0; i < COLUMNS; i++) fprintf(f.fp, "%s%s", i ? "\t" : "", names[i]);
     fprintf(f.fp, before ? "\tbefore\tdifference\n" : "\n");
     for (int i = 0; i < s->count; i++) put_row(f.fp, &s->rows[i], before);

@@ -10,6 +10,7 @@ struct sheet_row {
     char *state, *kind, *place, *unit; /* owned */
     int points;
     double mean, low, high; /* low, high: the 95 % interval of the mean */
+    bool has_interval;
     double least, most;
 };
 
@@ -17,13 +18,15 @@ struct sheet_row {
 struct sheet_values {
     const double *values, *weights;
     int count;
-    double low, high; /* the ends of the interval, as factors of the mean; high 0: there is none */
+    double low, high;   /* the ends of the interval, as factors of the mean; high 0: there is none */
+    const double *ends; /* or the ends themselves; NULL: by the factors */
 };
 
 /* {0} is the empty state; everything is owned. */
 struct light_sheet {
     struct sheet_row *rows;
     int count;
+    char note[300]; /* a comment above the rows; "": none */
 };
 
 /* Copies the texts. ST_NOMEM. */

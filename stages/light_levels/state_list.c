@@ -1,6 +1,7 @@
 /* state_list.c - see state_list.h. */
 #include "stages/light_levels/state_list.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -21,6 +22,7 @@ static void release_state(struct light_state *s)
 void state_list_release(struct state_list *l)
 {
     for (int i = 0; i < l->count; i++) release_state(&l->items[i]);
+    planned_lamps_release(&l->planned);
     free(l->items);
     free(l->path);
     *l = (struct state_list){0};
@@ -56,7 +58,7 @@ static enum status read_lamp(struct light_state *s, struct textfile *t, struct e
 static enum status read_time(struct light_state *s, const struct state_list *l, struct textfile *t, struct err *err)
 {
     int64_t month, day;
-    if (!l->has_site)
+    if (!l->has_site && s->sky != STATE_SKY_WEATHER)
         return textfile_error(t, err, "a sky at a time",
                               "the line `site LATITUDE LONGITUDE ZONE` above it, which says where the sun is");
     if (textfile_int(t, "a month", 1, 12, &month, err) || textfile_int(t, "a day", 1, 31, &day, err) ||
@@ -66,7 +68,6 @@ static enum status read_time(struct light_state *s, const struct state_list *l, 
     sun_date_of_day(sun_day_of_year((int)month, (int)day), &known_month, &known_day);
     if (known_month != month || known_day != day)
         return textfile_wrong_number(t, (double)day, "a day that this month has", err);
-    s->sky = STATE_SKY_TIME;
     s->time.year = YEAR;
     s->time.month = (int)month;
     s->time.day = (int)day;
@@ -91,11 +92,16 @@ static enum status read_sky(struct light_state *s, const struct state_list *l, s
     }
     for (int i = 0; i < 3; i++)
         if (!strcmp(word, covers[i])) {
+            s->sky = STATE_SKY_TIME;
             s->cover = (enum sky_cover)i;
             return read_time(s, l, t, err);
         }
+    if (!strcmp(word, "weather")) {
+        s->sky = STATE_SKY_WEATHER;
+        return read_time(s, l, t, err);
+    }
     return textfile_error(t, err, word,
-                          "none, photographed, overcast LUX, or clear, partly or cloudy with MONTH DAY HOUR");
+                          "none, photographed, overcast LUX, or clear, partly, cloudy or weather with MONTH DAY HOUR");
 }
 
 static enum status read_lamps(struct light_state *s, struct textfile *t, struct err *err)
@@ -146,7 +152,7 @@ static enum status read_state(struct state_list *l, struct textfile *t, struct e
     return err->status;
 }
 
-static enum status read_line(struct state_list *l, struct textfile *t, struct err *err)
+static enum status read_line(struct state_list *l, struct textfile *t, struct provenance *prov, struct err *err)
 {
     char *word;
     if (textfile_word(t, "a statement", &word, err)) return err->status;
@@ -154,7 +160,8 @@ static enum status read_line(struct state_list *l, struct textfile *t, struct er
         if (!read_site(l, t, err)) textfile_end(t, err);
         return err->status;
     }
-    return strcmp(word, "state") != 0 ? textfile_error(t, err, word, "site or state") : read_state(l, t, err);
+    if (!strcmp(word, "lamp")) return planned_lamps_read(&l->planned, t, prov, err);
+    return strcmp(word, "state") != 0 ? textfile_error(t, err, word, "site, lamp or state") : read_state(l, t, err);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- list */
@@ -190,9 +197,36 @@ enum status state_list_read(struct state_list *l, const char *path, struct prove
         if (!err->status && !textfile_expect_line(&t, "remodel-states", err) &&
             !textfile_int(&t, "version", 1, 1, &version, err))
             textfile_end(&t, err);
-        while (!err->status && textfile_next(&t)) read_line(l, &t, err);
+        while (!err->status && textfile_next(&t)) read_line(l, &t, prov, err);
     }
     textfile_release(&t);
     if (err->status) state_list_release(l);
     return err->status;
+}
+
+/* The record of the hour that a time is in; NULL: none. */
+static const struct weather_hour *find_hour(const struct weather *w, const struct sun_time *time)
+{
+    for (int i = 0; w && i < w->count; i++) {
+        const struct sun_time *m = &w->hours[i].middle;
+        if (m->month == time->month && m->day == time->day && fabs(m->hour - time->hour) <= 0.5) return &w->hours[i];
+    }
+    return NULL;
+}
+
+enum status state_list_take_weather(struct state_list *l, const struct weather *weather, struct err *err)
+{
+    for (int i = 0; i < l->count; i++) {
+        struct light_state *s = &l->items[i];
+        if (s->sky != STATE_SKY_WEATHER) continue;
+        const struct weather_hour *hour = find_hour(weather, &s->time);
+        if (!hour)
+            return err_set(err, ST_DATA, "%s:%d: the state %s wants the weather of %d %d, %g o'clock; %s.", l->path,
+                           s->line, s->name, s->time.month, s->time.day, s->time.hour,
+                           weather ? "the weather file has no such hour" : "give a weather file, WEATHER=FILE");
+        s->weather = hour->sky;
+        s->time = hour->middle;
+        s->place = weather->at;
+    }
+    return ST_OK;
 }

@@ -1,7 +1,8 @@
-/* state_list.h - scenes/NAME/states.txt: states of lamps and sky for which light is computed.
+/* state_list.h - scenes/NAME/states.txt: states of lamps and sky for which light is computed, and planned lamps.
  *
  *   remodel-states 1
  *   site LATITUDE LONGITUDE ZONE [north DEGREES]     before states that need the sun
+ *   lamp NAME ies FILE.ies at X Y Z ...              a planned lamp (planned_lamps.h), before states that name it
  *   state NAME [lamps on|off] [lamp NAME FACTOR]... [sky SKY]
  *
  * ZONE: hours that clocks are ahead of UTC. DEGREES: the azimuth of north in the model's frame, from x towards y (90
@@ -10,14 +11,17 @@
  *   photographed                        as in the photographs
  *   overcast LUX                        the overcast sky of daylight factors, with this horizontal illuminance
  *   clear|partly|cloudy MONTH DAY HOUR  the usual sky at that time, by the clock of the zone
- * Lamps are on unless a state says otherwise; `lamp` multiplies one by FACTOR. */
+ *   weather MONTH DAY HOUR              that of the weather file in the hour that this time is in
+ * Lamps of the photographs are on unless a state says otherwise, planned ones off; `lamp` multiplies one by FACTOR. */
 #ifndef REMODEL_LEVELS_STATE_LIST_H
 #define REMODEL_LEVELS_STATE_LIST_H
 
 #include "common/base/provenance.h"
 #include "common/daylight/sky_luminance.h"
+#include "common/daylight/weather.h"
+#include "stages/light_levels/planned_lamps.h"
 
-enum state_sky { STATE_SKY_NONE, STATE_SKY_PHOTOGRAPHED, STATE_SKY_OVERCAST, STATE_SKY_TIME };
+enum state_sky { STATE_SKY_NONE, STATE_SKY_PHOTOGRAPHED, STATE_SKY_OVERCAST, STATE_SKY_TIME, STATE_SKY_WEATHER };
 
 struct state_lamp {
     char *name; /* owned */
@@ -33,6 +37,8 @@ struct light_state {
     double horizontal;    /* lx, of STATE_SKY_OVERCAST */
     enum sky_cover cover; /* of STATE_SKY_TIME */
     struct sun_time time;
+    struct sky_weather weather; /* of STATE_SKY_WEATHER, once state_list_take_weather() found it */
+    struct sun_place place;
     int line; /* 0: not from a file */
 };
 
@@ -44,6 +50,7 @@ struct state_list {
     bool has_site;
     struct sun_place site;
     double north; /* degrees in the model's frame */
+    struct planned_lamps planned;
 };
 
 /* The states that every scene has, and those of a file; path NULL: no file. The first four are photographed, lamps,
@@ -52,5 +59,8 @@ enum { STATE_OVERCAST = 3, STATES_OF_EVERY_SCENE = 4 };
 #define STATE_OVERCAST_LUX 10000.0
 enum status state_list_read(struct state_list *l, const char *path, struct provenance *prov, struct err *err);
 void state_list_release(struct state_list *l);
+
+/* Gives states their weather. weather NULL: there is no file. ST_DATA with file and line: a state whose hour it lacks. */
+enum status state_list_take_weather(struct state_list *l, const struct weather *weather, struct err *err);
 
 #endif

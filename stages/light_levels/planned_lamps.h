@@ -1,0 +1,43 @@
+/* planned_lamps.h - lamps that somebody thinks of, with their makers' photometry: lines of scenes/NAME/states.txt.
+ *
+ *   lamp NAME ies FILE.ies at X Y Z [aim DX DY DZ] [turn DEGREES] [colour R G B]
+ *
+ * FILE.ies is beside states.txt. X Y Z is the middle of the luminous opening in the model's frame. `aim` is where the
+ * vertical angle 0 of the file points, straight down without it. `turn` turns the luminaire about that axis,
+ * counter-clockwise from above; without it the horizontal angle 0 lies along x. */
+#ifndef REMODEL_LEVELS_PLANNED_LAMPS_H
+#define REMODEL_LEVELS_PLANNED_LAMPS_H
+
+#include "common/daylight/photometry.h"
+#include "common/light/colour.h"
+
+struct textfile;
+
+struct planned_lamp {
+    char *name; /* owned */
+    struct photometry web;
+    struct vec3 at, down, along; /* unit directions of the vertical and the horizontal angle 0 */
+    struct rgb colour;           /* of luminance 1 */
+    int line;
+};
+
+/* {0} is the empty state; everything is owned. */
+struct planned_lamps {
+    struct planned_lamp *list;
+    int count;
+};
+
+/* Reads what follows `lamp` in a line. ST_DATA with file and line, of the IES file for what is wrong with that. */
+enum status planned_lamps_read(struct planned_lamps *l, struct textfile *t, struct provenance *prov, struct err *err);
+void planned_lamps_release(struct planned_lamps *l);
+int planned_lamps_find(const struct planned_lamps *l, const char *name); /* -1: not found */
+
+/* Whether light comes from more than one place. */
+bool planned_lamp_is_wide(const struct planned_lamp *l);
+/* A place of the luminous opening, u and v of 0 to 1; metre: model units of one. */
+struct vec3 planned_lamp_place(const struct planned_lamp *l, const double u[2], double metre);
+/* Illuminance in lx of a point from all of the lamp's light, sent out at one place that nothing hides. */
+double planned_lamp_illuminance(const struct planned_lamp *l, struct vec3 place, struct vec3 point, struct vec3 normal,
+                                double metre);
+
+#endif
