@@ -80,18 +80,23 @@ static inline void add_sky(struct room *r)
     assert_ok(field_sky_find(&r->field.sky, &r->field.outdoors, &err), err);
 }
 
-static inline void trace(struct room *r, int patches, int rays, double reflectance)
+static inline void trace_with(struct room *r, int patches, int rays, double reflectance, uint64_t key, bool hours)
 {
     struct err err = ERR_INIT;
-    assert_ok(groups_make(&r->groups, &r->field, true, &err), err);
+    assert_ok(groups_make(&r->groups, &r->field, hours, &err), err);
     assert_ok(patches_make(&r->patches, &r->field, patches, NULL, NULL, &err), err);
     struct row_place *places = calloc((size_t)r->patches.count, sizeof *places);
     for (int i = 0; i < r->patches.count; i++)
         places[i] = (struct row_place){r->patches.list[i].origins, r->patches.list[i].origin_count};
-    assert_ok(rows_trace(&r->rows, &r->groups, &r->patches, places, r->patches.count, rays, 1, "patches", &err), err);
+    assert_ok(rows_trace(&r->rows, &r->groups, &r->patches, places, r->patches.count, rays, key, "patches", &err), err);
     free(places);
     r->colours = calloc((size_t)r->patches.count, sizeof *r->colours);
     for (int i = 0; i < r->patches.count; i++) r->colours[i].reflectance = rgb_grey(reflectance);
+}
+
+static inline void trace(struct room *r, int patches, int rays, double reflectance)
+{
+    trace_with(r, patches, rays, reflectance, 1, true);
 }
 
 static inline void solve(struct room *r)
@@ -124,14 +129,20 @@ static inline double sum_groups(const struct room *r, const struct light_rows *a
     return sum;
 }
 
-static inline struct light_rows rows_at(const struct room *r, const struct gather_point *points, int count, int rays)
+static inline struct light_rows rows_with(const struct room *r, const struct gather_point *points, int count, int rays,
+                                          uint64_t key)
 {
     struct row_place places[8];
     struct light_rows rows;
     struct err err = ERR_INIT;
     for (int i = 0; i < count; i++) places[i] = (struct row_place){&points[i], 1};
-    assert_ok(rows_trace(&rows, &r->groups, &r->patches, places, count, rays, 1000000, "points", &err), err);
+    assert_ok(rows_trace(&rows, &r->groups, &r->patches, places, count, rays, key, "points", &err), err);
     return rows;
+}
+
+static inline struct light_rows rows_at(const struct room *r, const struct gather_point *points, int count, int rays)
+{
+    return rows_with(r, points, count, rays, 1000000);
 }
 
 #endif

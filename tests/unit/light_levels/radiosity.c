@@ -158,6 +158,41 @@ static void photographs_give_the_reflectance_back(void **state)
     release(&r);
 }
 
+/* The state of a room whose lamp and sky have been multiplied, gathered as a whole by other rays, and more of them, is
+ * the sum of the groups of the room as it was. */
+static void sums_of_groups_are_a_full_gather_of_the_whole_state(void **state)
+{
+    static const struct gather_point points[] = {
+        {{1, 1, 0.75}, {0, 0, 1}}, {{3, 3, 0.75}, {0, 0, 1}}, {{2, 3.99, 1.5}, {0, -1, 0}}, {{2, 2, 2.99}, {0, 0, -1}}};
+    static const double factors[][2] = {{1, 1}, {0.3, 2.5}, {3, 0}, {0, 1.5}};
+    struct room r[1 + 4];
+    double lamp[4], sky[4];
+    (void)state;
+    for (int k = 0; k < 5; k++) {
+        const double by[2] = {k ? factors[k - 1][0] : 1, k ? factors[k - 1][1] : 1};
+        start(&r[k], room_with_hole, ROOM_BOXES);
+        add_lamp(&r[k]);
+        r[k].lamp.radiance = rgb_grey(8 * by[0]);
+        r[k].lamp.centre = vec3_make(2.5, 1.5, 2.9);
+        const struct light_list lamps = r[k].field.lights;
+        add_sky(&r[k]);
+        r[k].field.lights.lamps = lamps.lamps;
+        r[k].field.lights.lamp_count = 1;
+        for (int i = 0; i < 3 * 16 * 32; i++) r[k].field.outdoors.rgb[i] = (float)by[1];
+        trace_with(&r[k], 500, k ? 1024 : 512, 0.6, k ? 77 : 1, false);
+        solve(&r[k]);
+        struct light_rows rows = rows_with(&r[k], points, 4, 16384, k ? 9000000 : 1000000);
+        for (int i = 0; i < 4; i++) {
+            const int first = r[k].groups.sky, end = first + r[k].groups.windows_count;
+            if (!k) lamp[i] = sum_groups(&r[k], &rows, i, 0, 1), sky[i] = sum_groups(&r[k], &rows, i, first, end);
+            const double sum = by[0] * lamp[i] + by[1] * sky[i];
+            if (k) assert_near(sum / sum_groups(&r[k], &rows, i, 0, r[k].groups.count), 1, 0.005);
+        }
+        rows_release(&rows);
+    }
+    for (int k = 0; k < 5; k++) release(&r[k]);
+}
+
 static void threads_change_no_bit(void **state)
 {
     struct room r[2];
@@ -185,6 +220,7 @@ int main(void)
         cmocka_unit_test(a_window_gives_the_sky_component_of_the_closed_form),
         cmocka_unit_test(patches_of_the_sky_sum_to_the_photographed_sky_with_all_reflections),
         cmocka_unit_test(photographs_give_the_reflectance_back),
+        cmocka_unit_test(sums_of_groups_are_a_full_gather_of_the_whole_state),
         cmocka_unit_test(threads_change_no_bit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
