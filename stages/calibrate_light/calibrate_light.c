@@ -122,8 +122,9 @@ static void say(const struct job *j)
     const struct lux_interval *e = &s->by_exposure;
     if (s->from == LUX_UNKNOWN) {
         log_warn(
-            "no photo states exposure time, f-number and ISO speed, so that light has no absolute unit; measure some "
-            "illuminances and write them to scenes/NAME/lux.txt.");
+            "no photo states exposure time, f-number and ISO speed, so that light has no absolute unit; write what is "
+            "missing to scenes/NAME/exposures.txt, such as `* 0 0 100` for ISO 100, or measure some illuminances and "
+            "write them to scenes/NAME/lux.txt.");
         return;
     }
     log_note("a radiance of 1 is %.4g cd/m2 (%.4g to %.4g), from %s", s->is.scale, s->is.low, s->is.high,

@@ -43,6 +43,26 @@ static int find_file(const struct photo_scan *scan, const char *file)
     return -1;
 }
 
+static void apply_line(struct exposure *e, const struct exposure *own)
+{
+    if (own->seconds > 0) e->seconds = own->seconds;
+    if (own->f_number > 0) e->f_number = own->f_number;
+    if (own->iso > 0) e->iso = own->iso;
+    e->filter = own->filter;
+}
+
+/* What is unknown of a photo is that of all. */
+static void apply_to_all(struct exposure *exposures, int count, const struct exposure *all)
+{
+    for (int i = 0; i < count; i++) {
+        struct exposure *e = &exposures[i];
+        if (!(e->seconds > 0)) e->seconds = all->seconds;
+        if (!(e->f_number > 0)) e->f_number = all->f_number;
+        if (!(e->iso > 0)) e->iso = all->iso;
+        if (e->filter == 1) e->filter = all->filter;
+    }
+}
+
 static enum status apply_list(struct exposure *exposures, const struct photo_scan *scan, const char *folder,
                               struct err *err)
 {
@@ -53,6 +73,7 @@ static enum status apply_list(struct exposure *exposures, const struct photo_sca
     for (int i = 0; !err->status && i < list.count; i++) {
         const struct exposure_line *line = &list.lines[i];
         int at = find_file(scan, line->file);
+        if (at < 0 && !strcmp(line->file, EXPOSURE_OF_ALL)) continue;
         snprintf(shown, sizeof shown, "%s", line->file);
         if (at < 0) {
             err_set(err, ST_DATA,
@@ -60,12 +81,10 @@ static enum status apply_list(struct exposure *exposures, const struct photo_sca
                     line->line, shown, scan->folder);
             break;
         }
-        struct exposure *e = &exposures[at];
-        e->seconds = line->exposure.seconds;
-        e->filter = line->exposure.filter;
-        if (line->exposure.f_number > 0) e->f_number = line->exposure.f_number;
-        if (line->exposure.iso > 0) e->iso = line->exposure.iso;
+        apply_line(&exposures[at], &line->exposure);
     }
+    for (int i = 0; !err->status && i < list.count; i++)
+        if (!strcmp(list.lines[i].file, EXPOSURE_OF_ALL)) apply_to_all(exposures, scan->count, &list.lines[i].exposure);
     exposure_list_release(&list);
     free(path);
     return err->status;
@@ -81,6 +100,20 @@ static enum status find_exposures(struct bracket_views *v, const struct photo_sc
         v->exposures[i] = (struct exposure){info->seconds, info->f_number, info->iso, 1};
     }
     if (!apply_list(v->exposures, scan, scan->folder, err) && scene) apply_list(v->exposures, scan, scene, err);
+    return err->status;
+}
+
+enum status bracket_views_take_exposures(struct photo_scan *scan, const char *scene, struct err *err)
+{
+    struct bracket_views v = {0};
+    find_exposures(&v, scan, scene, err);
+    for (int i = 0; !err->status && i < scan->count; i++) {
+        struct photo_info *info = &scan->photos[i].record.info;
+        info->seconds = v.exposures[i].seconds;
+        info->f_number = v.exposures[i].f_number;
+        info->iso = v.exposures[i].iso / v.exposures[i].filter;
+    }
+    free(v.exposures);
     return err->status;
 }
 

@@ -58,6 +58,10 @@ enum status bracket_views_find(struct bracket_views *v, const struct photo_scan 
                                const struct photo_params *params, const char *const *exclude, int exclude_count,
                                bool *used, struct err *err);
 
+/* Gives the records of photos that are not grouped the exposures of exposures.txt. Their filters count as a lower ISO
+ * speed. ST_DATA with file and line. */
+enum status bracket_views_take_exposures(struct photo_scan *scan, const char *scene, struct err *err);
+
 /* Writes the views' records, removes all other records in the folder, and writes the list. */
 enum status bracket_views_write(const struct bracket_views *v, const struct photo_scan *scan, const char *records,
                                 struct err *err);

@@ -27,6 +27,16 @@ static enum status read_number(struct textfile *t, const char *what, bool allow_
     return textfile_number_of(t, word, what, 1e-9, 1e9, value, err);
 }
 
+/* 0, from EXIF, needs another number behind it. */
+static enum status read_seconds(struct textfile *t, double *seconds, struct err *err)
+{
+    static const char what[] = "an exposure time in seconds";
+    char *word;
+    if (textfile_word(t, what, &word, err)) return err->status;
+    if (scan_double(word, seconds) && *seconds == 0 && textfile_more(t)) return ST_OK;
+    return textfile_number_of(t, word, what, 1e-9, 1e9, seconds, err);
+}
+
 static enum status read_line(struct exposure_list *list, struct textfile *t, struct err *err)
 {
     struct exposure e = {.filter = 1};
@@ -35,7 +45,7 @@ static enum status read_line(struct exposure_list *list, struct textfile *t, str
     for (int i = 0; !err->status && i < list->count; i++)
         if (!strcmp(list->lines[i].file, file))
             textfile_error(t, err, file, "each photo once (it is also in line %d)", list->lines[i].line);
-    if (!err->status) read_number(t, "an exposure time in seconds", false, &e.seconds, err);
+    if (!err->status) read_seconds(t, &e.seconds, err);
     if (!err->status && textfile_more(t)) {
         if (!read_number(t, "an f-number (0: from EXIF)", true, &e.f_number, err))
             read_number(t, "an ISO value (0: from EXIF)", true, &e.iso, err);

@@ -2,7 +2,8 @@
  *
  *   FILE SECONDS [F_NUMBER ISO [FILTER]]
  * One line per photo. FILTER is the factor of a neutral density filter: 1000 transmits a thousandth of the light.
- * F_NUMBER and ISO are taken from EXIF if they are missing or 0. */
+ * SECONDS, F_NUMBER and ISO are taken from EXIF if they are missing or 0. The FILE * stands for all photos, for what
+ * neither EXIF nor a line of their own says. */
 #ifndef REMODEL_EXPOSURE_LIST_H
 #define REMODEL_EXPOSURE_LIST_H
 
@@ -16,6 +17,8 @@ struct exposure {
 /* seconds x ISO / (f-number^2 x filter), proportional to the recorded value of a given radiance. An unknown f-number or
  * ISO is left out, so exposures can only be compared if the same quantities are known. 0 if the time is unknown. */
 double exposure_value(const struct exposure *e);
+
+#define EXPOSURE_OF_ALL "*"
 
 struct exposure_line {
     char *file; /* owned */

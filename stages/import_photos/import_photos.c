@@ -195,6 +195,7 @@ static enum status import(struct photo_scan *scan, const char *scene, const char
     report_colours(scan);
     report_gain_maps(scan);
     report_unused_parts(scan);
+    if (!bracketed && !bad && !like && !err->status) bracket_views_take_exposures(scan, scene, err);
     if (!bracketed)
         photo_scan_write(scan, out, err);
     else if (photo_scan_write_records(scan, members, &failed))

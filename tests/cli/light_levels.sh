@@ -4,7 +4,7 @@ project light_levels
 photos set --size 128x96 >/dev/null
 boxed t textures
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
-printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[light_levels]\npatches = 300\nrays = 64\npoint_rays = 64\nspacing = 4\nmargin = 2\n' >>scenes/t/scene.cfg
+printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[light_levels]\npatches = 300\nrays = 64\npoint_rays = 64\nspacing = 0.5\nmargin = 0.25\n' >>scenes/t/scene.cfg
 printf 'remodel-script 1\n# A dark floor.\npaint floor/hall 0.05 0.05 0.05\n' >scenes/t/edits/dark.txt
 printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
 printf 'remodel-states 1\nsite 52.5 13.4 1\nstate noon lamps off sky clear 6 21 12\n' >scenes/t/states.txt
@@ -47,6 +47,45 @@ make_lux_has_a_sheet_of_the_room_and_of_the_edit()
     ! grep -q light_levels log || { cat log; fail "a second make made it again"; }
 }
 
+# a metre is a guess by the rooms' height: the work plane of a sheet is 0.75 of it up, and its interval is wide
+a_room_without_a_scale_has_a_guessed_metre()
+{
+    local s=$O/lux/sheet.tsv
+    grep -q '^# no scale is known: a metre is a guess, ' "$s" || { head -40 "$s"; fail "the sheet hides the guess"; }
+    levels 0 'the scene has no scale, so that a metre is a guess: ' --out two/guess
+    local metre; metre=$(sed -n 's/.*a metre is a guess: \([0-9.]*\) units.*/\1/p' err.txt)
+    awk -v m="$metre" 'BEGIN { n = 0 } $1 == "area" { kind[$3] = $2 } $1 == "point" { if (n in kind) k = kind[n]; z[k] = $4; n++ }
+        END { exit !((z["work-plane"] - z["floor"] - 0.74 * m) ^ 2 < (0.01 * m) ^ 2 && z["work-plane-high"] > z["work-plane"]) }' two/guess/levels.txt ||
+        { cat err.txt; grep area two/guess/levels.txt; fail "the work plane is not 0.75 m up"; }
+    levels 0 'by rooms 5 m high' --set room_height=5 --out two/guess5
+}
+
+# E = I / r^2 below a planned lamp in a black room would be 111 lx; reflected light adds to it; a factor multiplies it
+planned_lamps_shine_in_the_states_that_name_them()
+{
+    local metre=8 # of 20 units a room
+    printf 'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n1000 1000\n' >lamp.ies
+    awk -v m="$metre" 'BEGIN { printf "remodel-places 1\nplace below at 0 8 height %.9g\n", 0.75 * m }' >below.txt
+    awk -v m="$metre" 'BEGIN { printf "remodel-states 1\nlamp new ies lamp.ies at 0 8 %.9g\nstate new lamps off lamp new 1\nstate half lamps off lamp new 0.5\nstate without lamps off\nstate mixed lamp new 1\n", 3.75 * m > "planned.txt" }'
+    levels 0 'the state mixed has lamps of the photographs' --states planned.txt --places below.txt --out two/planned
+    local s=two/planned/sheet.tsv
+    [ "$(cell $s new place below 11)" = lx ] && grep -q '^group [0-9]* planned new$' two/planned/levels.txt || { cat $s; fail "no lx"; }
+    awk -v a="$(cell $s new place below 5)" -v b="$(cell $s half place below 5)" 'BEGIN { exit !(a > 110 && a < 400 && (a - 2 * b) ^ 2 < (0.01 * a) ^ 2) }' ||
+        { grep below $s; fail "a planned lamp of 1000 cd does not give 111 lx and more, 3 m below"; }
+    [ -z "$(cell $s mixed place below 5)" ] && [ "$(cell $s without place below 5)" = 0 ] || { grep below $s; fail "other states"; }
+    # the light of given points is that of the sheet's points
+    printf '0 0 0 0 0 1\n1 2 3 0 1 0\n' >given.txt
+    levels 0 'used' --states planned.txt --points given.txt --table --out made
+    awk 'NR == 1 { for (i = 1; i <= NF; i++) c[$i] = i - 1; next } { n++; if ($c["mixed"] != "-" || NF != 14 || ($c["new"] - 2 * $c["half"]) ^ 2 > 1e-6 * $c["new"] ^ 2) bad = 1 } END { exit !(n == 2 && !bad) }' out.txt ||
+        { cat out.txt; fail "the table is wrong"; }
+    printf 'remodel-states 1\nlamp far ies lamp.ies at 0 0 500\n' >bad.txt
+    levels 1 'lies inside of a wall or outdoors' --states bad.txt --out made
+    printf 'remodel-states 1\nlamp new ies none.ies at 0 0 1\n' >bad.txt
+    levels 1 'none.ies' --states bad.txt --out made
+    printf 'remodel-lights 1\ndisk new 0 5 8 0 0 -1 1 50 50 50 90 0\n' >same.txt
+    levels 1 'has a lamp of that name' --lights same.txt --states planned.txt --out made
+}
+
 lamps_add_up_and_bytes_do_not_depend_on_threads()
 {
     printf 'remodel-lights 1\ndisk one 0 5 8 0 0 -1 1 50 50 50 90 0\ndisk two 3 8 8 0 0 -1 1 20 20 20 90 0\n' >lamps.txt
@@ -68,6 +107,14 @@ a_year_of_weather_has_its_figures()
     levels 0 '7 of the 3650 hours' --weather year.epw --out two/year
     for k in short supplementary autonomous exceeds; do cell two/year/sheet.tsv year-udi-$k work-plane "$(awk -F '\t' '$2 == "work-plane" { print $3; exit }' two/year/sheet.tsv)" 5; done |
         awk '{ s += $1 } END { exit !((s - 100) ^ 2 < 0.01) }' || { grep year two/year/sheet.tsv; fail "useful daylight does not sum to 100 %"; }
+    awk -F '\t' '$1 ~ /^year-/ { n++; if ($1 == "year-sun" ? $6 != "-" : !($6 <= $5 && $5 <= $7)) bad = 1 } END { exit !n || bad }' two/year/sheet.tsv ||
+        { grep year two/year/sheet.tsv; fail "figures of a year have no intervals"; }
+    printf 'remodel-states 1\nstate june lamps off sky weather 6 21 12.5\nstate night lamps off sky weather 6 21 3\n' >hours.txt
+    levels 1 'hours.txt:3: the state night wants the weather of 6 21, 3 o'"'"'clock; the weather file has no such hour' --states hours.txt --weather year.epw --out made
+    sed -i 3d hours.txt
+    levels 1 'give a weather file' --states hours.txt --out made
+    levels 0 used --states hours.txt --weather year.epw --out two/june
+    [ "$(cell two/june/sheet.tsv june work-plane "$(awk -F '\t' '$2 == "work-plane" { print $3; exit }' two/june/sheet.tsv)" 11)" = lx ] || fail "an hour of the weather has no lx"
 }
 
 errors_name_file_and_line()
@@ -91,4 +138,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures errors_name_file_and_line; do run "$t"; done

@@ -63,12 +63,12 @@ static void exposures_are_read_with_optional_numbers(void **state)
     assert_ok(exposure_list_read(&list,
                                  scratch_write("exposures.txt", "# file seconds f-number iso factor\n"
                                                                 "a.jpg 0.5\n\"b c.jpg\" 0.004 8 100\n"
-                                                                "d.jpg 0.00025 8 100 1000\ne.jpg 2 0 0 4\n"),
+                                                                "d.jpg 0.00025 8 100 1000\ne.jpg 2 0 0 4\n* 0 0 100\n"),
                                  &err),
               err);
-    assert_int_equal(list.count, 4);
-    const double values[] = {0.5, 0.004 * 100 / 64, 0.00025 * 100 / 64000, 0.5};
-    for (int i = 0; i < 4; i++) assert_true(fabs(exposure_value(&list.lines[i].exposure) - values[i]) <= 1e-15);
+    assert_int_equal(list.count, 5);
+    const double values[] = {0.5, 0.004 * 100 / 64, 0.00025 * 100 / 64000, 0.5, 0};
+    for (int i = 0; i < 5; i++) assert_true(fabs(exposure_value(&list.lines[i].exposure) - values[i]) <= 1e-15);
     assert_string_equal(list.lines[1].file, "b c.jpg");
     assert_int_equal(list.lines[3].line, 5);
     exposure_list_release(&list);

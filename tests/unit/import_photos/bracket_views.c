@@ -331,6 +331,18 @@ static void exposures_txt_overrides_exif(void **state)
     assert_int_equal(im.views.count, 3); /* 3.2 s through a filter of 2 is 1.6 s; the line of 7 s is overridden */
     import_release(&im);
 
+    /* a line of a photo comes before the line of all, and that only fills what EXIF leaves out */
+    put_text(photos, "exposures.txt", "");
+    put_text(scene, "exposures.txt", "* 99 8 100\nv1_e0.jpg 0.1 0 200 4\n");
+    assert_ok(import(&im, cycle, 9, "no", NULL), im.err);
+    assert_ok(bracket_views_take_exposures(&im.scan, scene, &im.err), im.err);
+    for (int i = 0; i < 9; i++) {
+        const struct photo_info *info = &im.scan.photos[i].record.info;
+        const bool first = !strcmp(im.scan.photos[i].file, "v1_e0.jpg");
+        assert_true(info->iso == (first ? 50 : 100) && info->f_number == 8 && info->seconds < 99);
+    }
+    import_release(&im);
+
     put_text(scene, "exposures.txt", "v9.jpg 0.1\n");
     assert_int_equal(import(&im, cycle, 9, "auto", NULL), ST_DATA);
     assert_err(im.err, ST_DATA, "exposures.txt:1: found v9.jpg, wanted the name of a photo in");
