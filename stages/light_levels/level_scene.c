@@ -70,9 +70,9 @@ static enum status check_planned(const struct level_scene *s, const struct model
         const struct vec3 at = vec3_add(l->at, vec3_scale(l->down, 2 * field->reach));
         if (!model_rays_near(&field->model, l->at) || level_scene_inside(field, at))
             return err_set(err, ST_DATA,
-                           "line %d of states.txt: the lamp %s at %g %g %g lies inside of a wall or outdoors; give "
-                           "another place, in the frame of the plan.",
-                           l->line, l->name, l->at.x, l->at.y, l->at.z);
+                           "%s:%d: the lamp %s at %g %g %g lies inside of a wall or outdoors; give another place, in "
+                           "the frame of the plan.",
+                           s->planned->path, l->line, l->name, l->at.x, l->at.y, l->at.z);
     }
     return ST_OK;
 }

@@ -25,6 +25,7 @@ void planned_lamps_release(struct planned_lamps *l)
         free(l->list[i].name);
     }
     free(l->list);
+    free(l->path);
     *l = (struct planned_lamps){0};
 }
 
@@ -112,6 +113,7 @@ enum status planned_lamps_read(struct planned_lamps *l, struct textfile *t, stru
     if (array_append(&l->list, (size_t)l->count, sizeof *l->list, "lamps", err)) return err->status;
     struct planned_lamp *lamp = &l->list[l->count++];
     *lamp = (struct planned_lamp){.colour = rgb_grey(1), .line = t->line};
+    if (!l->path && !(l->path = strdup(t->path))) return err_nomem(err, "a path", strlen(t->path));
     if (textfile_word(t, "a lamp's name", &word, err)) return err->status;
     if (!(lamp->name = strdup(word))) return err_nomem(err, "a name", strlen(word));
     if (!scan_is_name(word))

@@ -25,6 +25,7 @@ struct planned_lamp {
 struct planned_lamps {
     struct planned_lamp *list;
     int count;
+    char *path; /* of the file with the lines; NULL without lamps */
 };
 
 /* Reads what follows `lamp` in a line. ST_DATA with file and line, of the IES file for what is wrong with that. */
