@@ -20,7 +20,7 @@ wasm: deps-draw ## build_model as WebAssembly, which make draw of an installed r
 bench: deps-bench ## measure everything in tests/bench: tables and plots under out/bench
 	+@$(BUILD) bench-build
 	+@rc=0; for b in tests/bench/*.sh; do tests/bench/run "$$(basename $$b .sh)" '$(B)' || rc=1; done; exit $$rc
-bench-%: deps-bench FORCE ## one of them: bench-depth, bench-exr, bench-hdr, bench-irradiance, bench-irradiance_scenes, bench-lamps, bench-matching, bench-materials, bench-moves, bench-render, bench-relight, bench-remodel, bench-render_model, bench-rooms, bench-scaling, bench-simulate, bench-solve, bench-things, bench-unite, bench-vdta
+bench-%: deps-bench FORCE ## one of them: bench-daylight, bench-depth, bench-exr, bench-hdr, bench-irradiance, bench-irradiance_scenes, bench-lamps, bench-matching, bench-materials, bench-moves, bench-render, bench-relight, bench-remodel, bench-render_model, bench-rooms, bench-scaling, bench-simulate, bench-solve, bench-things, bench-unite, bench-vdta
 	+@$(BUILD) bench-build
 	+@tests/bench/run '$*' '$(B)'
 bench-compare: deps-bench ## NAME=exr OLD=REVISION: the same bench on another revision's code, alternating
