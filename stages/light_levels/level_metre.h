@@ -1,4 +1,4 @@
-/* level_metre.h - how long a metre is in a model: known by the scene's scale, else guessed by the height of its rooms. */
+/* level_metre.h - how long a metre is in a model: known by the scene's scale, else guessed by its rooms' height. */
 #ifndef REMODEL_LEVEL_METRE_H
 #define REMODEL_LEVEL_METRE_H
 

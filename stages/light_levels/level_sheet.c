@@ -2,8 +2,8 @@
  *
  * Intervals. The mean of an area has two errors, taken as independent and lognormal: that of the scale from the
  * photographs' unit to cd/m2 (lux_scale.h), which counts for light of the photographs alone, and that of the model, its
- * textures and the rays, [light_levels] error. The interval is 95 % of their product. Where a metre is a guess, light of
- * planned lamps goes with its square, and the work plane's interval holds those of planes at both ends of the guess.
+ * textures and the rays, [light_levels] error. The interval is 95 % of their product. Where a metre is a guess, light
+ * of planned lamps goes with its square, and the work plane's interval holds those of planes at both ends of the guess.
  * Figures of a year are counted again in rooms that are darker and brighter by the model's error; the interval reaches
  * from the least to the most of them. The weather is taken as it is. */
 #include "stages/light_levels/level_sheet.h"

@@ -4,8 +4,9 @@
  * and reflected sun bring is a sum over groups; the sun's direct light is a ray from the point. Blinds are not
  * drawn.
  *
- * Years of rooms that are brighter and darker by the error of the model are counted beside it. That error is mostly one
- * for a whole room, a wall too dark or a window too large, so all hours and points are multiplied by the same factor. */
+ * Years of rooms that are brighter and darker by the error of the model are counted beside it. That error is mostly
+ * one for a whole room, a wall too dark or a window too large, so all hours and points are multiplied by the same
+ * factor. */
 #include "stages/light_levels/level_year.h"
 
 #include <math.h>

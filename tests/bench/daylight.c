@@ -2,11 +2,12 @@
  *
  *   daylight --series levels|hemicube|cosine --effort N
  *
- * A black room of 4 x 4 x 3 m with a hole of 2 x 1.5 m, below the overcast sky of daylight factors; 25 points of a work
- * plane 0.75 m up. Truth is a closed form, integrated once by a fine rule. `levels`: rows of light_levels, N rays by the
- * cosine and N to the window, which give the light of all 145 patches of the sky and of as many suns; `hemicube`: a ray
- * through each pixel of a plain hemicube, N x N; `cosine`: N rays by the cosine. Prints "seconds S" (CPU time of the 25
- * points in one thread), "error E" (root mean square of the relative error) and "rays N" of a point. */
+ * A black room of 4 x 4 x 3 m with a hole of 2 x 1.5 m, below the overcast sky of daylight factors; 25 points of a
+ * work plane 0.75 m up. Truth is a closed form, integrated once by a fine rule. `levels`: rows of light_levels, N rays
+ * by the cosine and N to the window, which give the light of all 145 patches of the sky and of as many suns;
+ * `hemicube`: a ray through each pixel of a plain hemicube, N x N; `cosine`: N rays by the cosine. Prints "seconds S"
+ * (CPU time of the 25 points in one thread), "error E" (root mean square of the relative error) and "rays N" of a
+ * point. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

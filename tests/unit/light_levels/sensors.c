@@ -1,5 +1,5 @@
-/* sensors.c - points of work planes and floors: what stands in them, over them, and how high they are where a metre is a
- * guess. */
+/* sensors.c - points of work planes and floors: what stands in them and over them, and how high they are where a metre
+ * is a guess. */
 #include "tests/unit/level_room.h"
 
 #include "stages/light_levels/sensors.h"

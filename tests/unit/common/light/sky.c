@@ -119,8 +119,8 @@ static void panorama_has_no_seam(void **state)
     }
 }
 
-/* Skies of the CIE above a ground of their own: a horizontal surface has pi L under the uniform sky, and 7 pi / 9 of the
- * zenith's luminance under the traditional overcast one, whose horizon has a third of it. */
+/* Skies of the CIE above a ground of their own: a horizontal surface has pi L under the uniform sky, and 7 pi / 9 of
+ * the zenith's luminance under the traditional overcast one, whose horizon has a third of it. */
 static void skies_of_the_cie_have_their_illuminance(void **state)
 {
     enum { RINGS = 400, SECTORS = 32 };
