@@ -18,7 +18,8 @@ static struct sky sky_of(const struct sky_params *params)
     return sky;
 }
 
-static const struct sky_params grey = {.has_panorama = true, .panorama = {3, {2, 2, 2}, {0.5, 0.5, 0.5}}};
+static const struct sky_params grey = {.has_panorama = true,
+                                       .panorama = {.seed = 3, .sky = {2, 2, 2}, .ground = {0.5, 0.5, 0.5}}};
 
 /* A disk of constant radiance L and angular radius a gives a surface that faces it the irradiance pi L sin^2 a. */
 static void sun_disk_gives_its_irradiance(void **state)
@@ -43,7 +44,8 @@ static void sun_disk_gives_its_irradiance(void **state)
 static void without_sun_and_panorama_the_sky_is_black(void **state)
 {
     (void)state;
-    const struct sky_params none = {0}, black = {.has_panorama = true, .panorama = {7, {0, 0, 0}, {0, 0, 0}}};
+    const struct sky_params none = {0}, black = {.has_panorama = true,
+                                                 .panorama = {.seed = 7, .sky = {0, 0, 0}, .ground = {0, 0, 0}}};
     const struct sky a = sky_of(&none), b = sky_of(&black);
     for (int i = 0; i < 2000; i++) {
         const struct vec3 d = direction(i * 137.5, i % 180 - 90);

@@ -97,7 +97,8 @@ static void columns_count_azimuth_from_x_towards_y_and_rows_run_downwards(void *
 static void a_known_sky_is_found_again(void **state)
 {
     (void)state;
-    const struct sky_params params = {.has_panorama = true, .panorama = {5, {1, 1.2, 1.6}, {0.3, 0.28, 0.2}}};
+    const struct sky_params params = {.has_panorama = true,
+                                      .panorama = {.seed = 5, .sky = {1, 1.2, 1.6}, .ground = {0.3, 0.28, 0.2}}};
     struct outdoors o = {0};
     struct err err = ERR_INIT;
     struct sky sky;
