@@ -68,6 +68,25 @@ const tests = {
         near((1 - clip[1] / clip[3]) / 2, 60 / 70, 1e-5);
         near(clip[3], 2.5, 1e-5);
     },
+    a_room_is_open_where_a_wall_is_missing_but_not_where_a_pane_is() {
+        const model = room();
+        assert(!W.isOpen(model, [[2, 1.5, 1.25]]));
+        assert(!W.choosePair(sceneOf(model, [[1, 1, 1.5], [3, 1, 1.5]]), model, lookAt([2, 1, 1], 0), true).open);
+        model.faces[5].pane = 1;
+        model.faces[5].shown = 0;
+        assert(!W.isOpen(model, [[2, 1.5, 1.25]]));
+        const p = W.paneMesh(model, 0.01);  // the east wall, 1 cm larger on all sides
+        assert.strictEqual(p.length, 18);
+        for (let k = 0; k < 18; k += 3) {
+            near(p[k], 4);
+            near(Math.abs(p[k + 1] - 1.5), 1.51);
+            near(Math.abs(p[k + 2] - 1.25), 1.26);
+        }
+        model.faces.splice(5, 1);
+        assert(W.isOpen(model, [[2, 1.5, 1.25]]));
+        assert(W.choosePair(sceneOf(model, [[1, 1, 1.5], [3, 1, 1.5]]), model, lookAt([2, 1, 1], 0), true).open);
+        assert(!W.choosePair(sceneOf(model, [[1, 1, 1.5], [3, 1, 1.5]]), model, lookAt([2, 1, 1], Math.PI), true).open);
+    },
     in_a_viewpoint_it_has_all_the_weight() {
         const model = room(), scene = sceneOf(model, [[1, 1, 1.5], [3, 1, 1.5], [2, 2.5, 1.5]]);
         const pair = W.choosePair(scene, model, lookAt([3, 1, 1.5], Math.PI / 2), true);

@@ -114,16 +114,20 @@ W.shaders = {
             }
         }`
     ],
+    // what lies outdoors: in panes, or everywhere
     sky: [
-        `layout(location=0) in vec3 p; out vec2 at; void main() { gl_Position = vec4(p.xy, 1., 1.); at = p.xy; }`,
-        `in vec2 at; uniform sampler2D page; uniform mat3 turn; uniform vec4 lens; uniform int made; uniform vec3 kinds[9];
-        out vec4 colour;
+        `layout(location=0) in vec3 p; uniform mat4 clip; uniform vec3 centre; out vec3 along;
+        void main() { along = p - centre; gl_Position = (clip * vec4(p, 1.)).xyww; }`,
+        `in vec3 along; uniform sampler2D page; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
         void main() {
-            vec3 d = turn * vec3((at.x - lens.z) / lens.x, (at.y - lens.w) / lens.y, 1.);
-            vec2 uv = vec2(atan(d.y, d.x) / 6.2831853 + .5, .5 - atan(d.z, length(d.xy)) / 3.1415927);
+            vec2 uv = vec2(atan(along.y, along.x) / 6.2831853 + .5, .5 - atan(along.z, length(along.xy)) / 3.1415927);
             colour = vec4(textureLod(page, uv, 0.).rgb, 1.);
             if (made == 1) colour.rgb = sqrt(mix(kinds[6], linear(colour.rgb), .3) * hatch(6));
         }`
+    ],
+    blank: [
+        `layout(location=0) in vec3 p; void main() { gl_Position = vec4(p.xy, 1., 1.); }`,
+        `out vec4 colour; void main() { colour = vec4(0); }`
     ],
     // a photograph in its viewpoint
     photo: [
@@ -172,7 +176,27 @@ W.shaders = {
         `in vec3 normal; uniform vec3 albedo; uniform int made; uniform vec3 kinds[9]; out vec4 colour;
         void main() { colour = vec4(sqrt(made == 1 ? kinds[5] * hatch(5) : albedo * (.75 + .25 * normalize(normal).z)), 1.); }`
     ],
+    // the buffers laid together: pixel by pixel, or with more or fewer pixels than the canvas
     show: [
+        `layout(location=0) in vec3 p; void main() { gl_Position = vec4(p.xy, 0., 1.); }`,
+        `uniform sampler2D shell; out vec4 colour;
+        void main() {
+            vec3 c = texelFetch(shell, ivec2(gl_FragCoord.xy), 0).rgb;
+            colour = vec4(min(min(c.r, c.g), c.b) > .992 ? vec3(1) : c, 1.);
+        }`
+    ],
+    showFurniture: [
+        `layout(location=0) in vec3 p; void main() { gl_Position = vec4(p.xy, 0., 1.); }`,
+        `uniform sampler2D shell, clutter, all; out vec4 colour;
+        void main() {
+            ivec2 at = ivec2(gl_FragCoord.xy);
+            vec3 c = linear(texelFetch(shell, at, 0).rgb);
+            vec4 f = texelFetch(clutter, at, 0);
+            if (f.a > 0.) c = mix(c, f.rgb / f.a, min(1., f.a / texelFetch(all, at, 0).r));
+            colour = vec4(sqrt(clamp(c, 0., 1.)), 1.);
+        }`
+    ],
+    showScaled: [
         `layout(location=0) in vec3 p; out vec2 uv; uniform vec2 part;
         void main() { gl_Position = vec4(p.xy, 0., 1.); uv = (p.xy * .5 + .5) * part; }`,
         `in vec2 uv; uniform sampler2D shell, clutter, all; uniform int furniture, four; out vec4 colour;
@@ -237,8 +261,9 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
     // layout: [[location, numbers], ...] of a corner
     buffer(data, layout, elements) {
         const gl = this.gl, array = gl.createVertexArray(), stride = 4 * layout.reduce((sum, l) => sum + l[1], 0);
+        const numbers = gl.createBuffer();
         gl.bindVertexArray(array);
-        gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+        gl.bindBuffer(gl.ARRAY_BUFFER, numbers);
         gl.bufferData(gl.ARRAY_BUFFER, data, gl.STATIC_DRAW);
         let at = 0;
         for (const [place, count] of layout) {
@@ -253,7 +278,7 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
             gl.bufferData(gl.ELEMENT_ARRAY_BUFFER, elements, gl.STATIC_DRAW);
         }
         gl.bindVertexArray(null);
-        return {array, index, count: elements ? elements.length : (4 * data.length) / stride};
+        return {array, data: numbers, index, count: elements ? elements.length : (4 * data.length) / stride};
     }
     texture(picture) {
         const gl = this.gl, t = gl.createTexture();
@@ -385,7 +410,7 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
     }
     /* p: what to draw:
      *   camera, box (x y width height of the canvas), part (of its pixels along each side: less while it must be
-     * quick), solid, sets: [first, second] viewpoint or null, share, vita, rules, outdoors, light: {set, most},
+     * quick), solid, sets: [first, second] viewpoint or null, share, vita, rules, outdoors, panes (where it is seen; null: anywhere), light: {set, most},
      * clutter: {draws: [{texture, buffer, first, count, moved, own, eye}], witnesses}, grid, photos: [{view, texture, alpha, change}], objects,
      * made (0, or 1: colours of origin), kinds, near, far */
     paint(p) {
@@ -405,7 +430,8 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
         gl.stencilMask(255);
         gl.colorMask(true, true, true, true);
         gl.clearColor(0, 0, 0, 0);
-        gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
+        gl.clear(gl.DEPTH_BUFFER_BIT | gl.STENCIL_BUFFER_BIT);
+        this.blank();
         gl.enable(gl.CULL_FACE);
         // what hides what
         gl.depthFunc(gl.LESS);
@@ -467,9 +493,13 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
         }
         if (p.outdoors) {
             this.bind(p.outdoors);
-            const [fx, fy, cx, cy] = camera.lens, w = 2 / camera.width, h = 2 / camera.height, t = camera.turn;
-            this.use('sky', {...values, lens: [fx * w, -fy * h, cx * w - 1, 1 - cy * h], turn: t});
-            this.draw(this.square, 0, 4, true);
+            this.use('sky', {...values, centre: camera.centre});
+            if (p.panes) {
+                gl.enable(gl.CULL_FACE);
+                if (p.panes.count) this.draw(p.panes, 0, p.panes.count);
+                gl.disable(gl.CULL_FACE);
+            } else
+                this.draw(this.around(camera), 0, 4, true);
         }
         if (p.clutter.draws.length) this.paintClutter(p, values);
         gl.disable(gl.DEPTH_TEST);
@@ -483,15 +513,36 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
         gl.viewport(0, 0, width, height);
         gl.scissor(...p.box);
         gl.bindTexture(gl.TEXTURE_2D, this.targets[0].colour);
-        this.use('show', {
-            shell: 0,
-            clutter: 1,
-            all: 3,
-            part: [wide / this.width, high / this.height],
-            furniture: p.clutter.draws.length && !p.photos.length ? 1 : 0,
-            four: part === 2 ? 1 : 0
-        });
+        const furniture = p.clutter.draws.length && !p.photos.length ? 1 : 0, sources = {shell: 0, clutter: 1, all: 3};
+        if (part === 1)
+            this.use(furniture ? 'showFurniture' : 'show', sources);
+        else
+            this.use('showScaled', {
+                ...sources,
+                part: [wide / this.width, high / this.height],
+                furniture,
+                four: part === 2 ? 1 : 0
+            });
         this.draw(this.square, 0, 4, true);
+    }
+    // Makes all colours of bytes 0: software draws a square in half the time in which it clears them.
+    blank() {
+        const gl = this.gl;
+        gl.disable(gl.CULL_FACE);
+        gl.disable(gl.DEPTH_TEST);
+        this.use('blank', {});
+        this.draw(this.square, 0, 4, true);
+        gl.enable(gl.DEPTH_TEST);
+    }
+    // A square far before a camera that covers its picture.
+    around(camera) {
+        const gl = this.gl, b = this.far || (this.far = this.buffer(new Float32Array(12), [[0, 3]]));
+        const corners = [[0, camera.height], [camera.width, camera.height], [0, 0], [camera.width, 0]];
+        gl.bindBuffer(gl.ARRAY_BUFFER, b.data);
+        gl.bufferSubData(
+            gl.ARRAY_BUFFER, 0,
+            new Float32Array(corners.flatMap(([x, y]) => W.add(camera.centre, W.rayOf(camera, x, y)))));
+        return b;
     }
     // The views that vote on furniture: what each sees, a layer of a texture, and where it stands.
     witnesses(list) {
@@ -592,7 +643,7 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
     }
 }
 W.shaders.lay = [
-    W.shaders.show[0], `in vec2 uv; uniform sampler2D shell, all; out vec4 colour;
+    W.shaders.showScaled[0], `in vec2 uv; uniform sampler2D shell, all; out vec4 colour;
     void main() {
         vec4 f = texture(shell, uv);
         if (f.a <= 0.) discard;

@@ -111,11 +111,12 @@ W.choosePair = (scene, model, camera, fine) => {
         if (seen) best.push([sum / samples.length, i]);
     }
     best.sort((a, b) => a[0] - b[0] || a[1] - b[1]);
-    if (best.length < 2) return {places: [best.length ? best[0][1] : -1, -1], t: 0};
+    const open = samples.length < (fine ? 192 : 48);  // rays that leave the rooms
+    if (best.length < 2) return {places: [best.length ? best[0][1] : -1, -1], t: 0, open};
     const last = best.length > 2 ? best[2][0] : unseen;
     const weights = [0, 1].map((k) => Math.max(0, 1 - best[k][0] / last) / Math.max(best[k][0], 1e-9));
     const all = weights[0] + weights[1];
-    return {places: [best[0][1], best[1][1]], t: all > 0 ? weights[1] / all : 0};
+    return {places: [best[0][1], best[1][1]], t: all > 0 ? weights[1] / all : 0, open};
 };
 
 // Places where furniture may be seen: on what the camera sees, and half way to it.
@@ -260,6 +261,27 @@ W.atlasMesh = (model, atlas, free, wanted = () => true) => {
 // All faces that are seen: x y z
 W.solidMesh = (model, wanted = () => true) =>
     new Float32Array(model.faces.filter((f) => f.shown && wanted(f)).flatMap((f) => f.corners.flat()));
+
+// Panes that are looked through, a little larger than they are so that no border stays free: x y z
+W.paneMesh = (model, more) =>
+    new Float32Array(model.faces.filter((f) => f.pane && !f.shown).flatMap((f) => f.corners.flatMap((p) => {
+        const q = [...p];
+        f.axes.forEach((a, k) => {
+            const [low, high] = f.box[k];
+            q[a] += more * ((2 * p[a] - low - high) / (high - low || 1));
+        });
+        return q;
+    })));
+
+// Whether one looks out of the rooms elsewhere than through a pane, as far as some hundred rays from places tell.
+W.isOpen = (model, places) => {
+    for (const from of places)
+        for (let k = 0; k < 150; k++) {
+            const z = (2 * k + 1) / 150 - 1, r = Math.sqrt(1 - z * z), a = 2.39996 * k;
+            if (!W.hit(model, from, [r * Math.cos(a), r * Math.sin(a), z])) return true;
+        }
+    return false;
+};
 
 // A view's furniture: {points: x y z u v of the grid and slack, 1 more in a thing that was found, columns, cells}
 W.clutterGrid = (scene, view, grid, bytes) => {

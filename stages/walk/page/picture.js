@@ -100,6 +100,7 @@ const drawModel = (camera, m, box, fixed = {}) => {
         solid: above ? made.aboveSolid : made.solid,
         vita: {...(above ? made.aboveVita : made.vita), pages: vita.pages},
         outdoors: above ? null : outdoors,
+        panes: made.open || made.pair.open ? null : made.panes,
         light,
         made: S.made ? 1 : 0,
         kinds,

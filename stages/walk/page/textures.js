@@ -93,6 +93,8 @@ const modelOf = (m) => {
     models[m] = {
         rules: Math.max(1, ...model.faces.map((f) => f.rules.length)),
         solid: painter.buffer(W.solidMesh(model), [[0, 3]]),
+        panes: painter.buffer(W.paneMesh(model, 0.004 * S.size), [[0, 3]]),
+        open: W.isOpen(model, scene.places.filter((p, i, all) => i % Math.ceil(all.length / 12) === 0).map((p) => p.centre)),
         vita: freeMesh(model, scene.vita),
         aboveSolid: () => painter.buffer(W.solidMesh(model, inside), [[0, 3]]),
         aboveVita: () => freeMesh(model, scene.vita, inside),
