@@ -49,7 +49,8 @@ runTests({
     async a_length_makes_the_page_count_in_metres(hand) {
         const edit = 'remodel-script 1\n# by 0.4\nmove west by 0.4\nbox chest from 1 1 to 2 1.5 top 0.8 turn 30\ncolour box/chest 0.1 0.2 0.3\n';
         const text = WALLS.replace('set ceiling 2.5', '# 2.5 high\nset  ceiling 2.5') + 'room main south west north east\n';
-        await hand.begin(text, {'edits/e.txt': edit});
+        const lights = 'remodel-lamps 1\narea off in p0 1 1 2 1 2 2 1 2 off 0.04 # 0.04\nlit off in p0 3 3 4 4\n', tour = 'remodel-tour 1\nspeed 0.4\nroom main\n';
+        await hand.begin(text, {'edits/e.txt': edit, 'lights.txt': lights, 'tour.txt': tour});
         await hand.page.run("app.openFile('scale.txt')");
         await hand.clicks('mark', 'p0', [at('p0', [1, 0.5, 0]), at('p0', [3, 0.5, 0])]);
         const before = JSON.stringify(await hand.page.run('app.texts.now')), east = (m) => m.walls.find((w) => w.name === 'east').at;
@@ -57,18 +58,31 @@ runTests({
         await hand.form('Length', {from: 'mark1', to: 'mark2', length: '5'});
         const said = await hand.page.run("document.getElementById('meant').textContent"), notes = await hand.page.run("document.getElementById('notes').textContent");
         check(/mark1 to mark2: 5 m given; the model here has 5\.000 m/.test(said), said);
-        check(/in metres now: 1 unit was 2\.(49|50)\d+ m\. Lengths in edits\/e\.txt, model\.txt were multiplied by 2\.(49|50)/.test(notes), notes);
+        check(/in metres now: 1 unit was 2\.(49|50)\d+ m\. Lengths in edits\/e\.txt, lights\.txt, model\.txt, tour\.txt were multiplied by 2\.(49|50)/.test(notes), notes);
         const unit = await hand.page.run('app.unit'), n = (v) => String(+(unit * v).toFixed(5));
         check(Math.abs(unit - 2.5) < 0.01 && Math.abs(east(await hand.model()) + 4 * unit) < 1e-4, `a unit is ${unit}, east is at ${east(await hand.model())}`);
         check((await hand.text()).includes(`# 2.5 high\nset  ceiling ${n(2.5)}\nset thickness ${n(0.1)}\nwall south from ${n(4)} 0 to 0 0\n`), await hand.text());
         check(await hand.text('edits/e.txt') === `remodel-script 1\n# by 0.4\nmove west by ${n(0.4)}\nbox chest from ${n(1)} ${n(1)} to ${n(2)} ${n(1.5)} top ${n(0.8)} turn 30\ncolour box/chest 0.1 0.2 0.3\n`,
             await hand.text('edits/e.txt'));
+        check(await hand.text('lights.txt') === lights.replace('off 0.04 ', `off ${n(0.04)} `), await hand.text('lights.txt'));
+        check(await hand.text('tour.txt') === tour.replace('0.4', n(0.4)), await hand.text('tour.txt'));
         const after = JSON.stringify(await hand.page.run('app.texts.now'));
         await hand.page.run('app.undo()');
         check(JSON.stringify(await hand.page.run('app.texts.now')) === before && await hand.page.run('app.unit') === 1, 'undo did not restore the texts');
         check(Math.abs(east(await hand.model()) + 4) < 1e-9, 'undo did not restore the model');
         await hand.page.run('app.redo()');
         check(JSON.stringify(await hand.page.run('app.texts.now')) === after && Math.abs(east(await hand.model()) + 4 * unit) < 1e-4, 'redo did not bring it back');
+    },
+
+    /* What a suggestion says of a statement goes when the statement was accepted. */
+    async a_doubtful_suggestion_takes_its_remark_along(hand) {
+        await hand.begin(WALLS, {});
+        await hand.page.run("app.suggested = [new SuggestedPanel(document.getElementById('suggested'), app, 'model.txt', 'remodel-script 1\\nset ceiling 2.5\\n# nobody saw the sky\\n\\n# bright and without depth: a window\\n# window window1 on east from -1 1 to -2 2\\n')]; app.openFile('model.txt')");
+        const shown = () => hand.page.run("document.getElementById('suggested').textContent");
+        check(/nobody saw the sky.*bright and without depth/.test(await shown()), await shown());
+        await hand.page.run("[...document.querySelectorAll('#suggested li')].find((e) => e.querySelector('input') && /^window/.test(e.querySelector('input').value)).querySelector('button').click()");
+        check(/nobody saw the sky/.test(await shown()) && !/bright/.test(await shown()), await shown());
+        check(/^window window1 on east/m.test(await hand.text()), await hand.text());
     },
 
     /* What a model lacks is said, each part until it is there. */

@@ -56,6 +56,9 @@ const tests = {
 
     async lamps_and_what_they_light_are_marked(hand) {
         await open(hand, 'lights.txt');
+        const floor = (x, y) => project('p0', [x, y, 0]);
+        await hand.drag('lit', 'p0', [floor(2.8, 0.3), floor(2.2, 0.6)]);
+        check(/Mark a lamp first/.test(await hand.refusal()), await hand.refusal());
         const p = (x, y, z) => project('p0', [x, y, z]), area = [[1, 0.05], [1.4, 0.05], [1.4, 0.2], [1, 0.2]].map(([x, y]) => p(x, y, 2.5));
         await hand.clicks('disk', 'p0', [p(2.5, 0.3, 2.5), p(2.6, 0.3, 2.5)]);
         check(await last(hand, 'lights.txt') === `disk lamp1 in p0 ${px([p(2.5, 0.3, 2.5)])} rim ${px([p(2.6, 0.3, 2.5)])} beta fit`, await last(hand, 'lights.txt'));
@@ -65,10 +68,9 @@ const tests = {
         await hand.drag('lit', 'p0', [p(2.8, 0, 1.5), p(2.2, 0, 1)]);
         check(/^lit lamp2 in p0 /.test(await last(hand, 'lights.txt')), await last(hand, 'lights.txt'));
         await hand.page.key('z', 2);
-        await name(hand, '');
-        await hand.drag('lit', 'p0', [p(2.8, 0, 1.5), p(2.2, 0, 1)]);
-        check(/Give the name of the lamp below/.test(await hand.refusal()), await hand.refusal());
-        await name(hand, 'lamp1');
+        const lamps = "document.querySelector('#forms select[name=lamp]')";
+        check(await hand.page.run(`[...${lamps}.options].map((o) => o.value).join() + ' ' + ${lamps}.value`) === 'lamp1,lamp2 lamp2', 'the lamps are not there to choose from');
+        await hand.page.run(`${lamps}.value = 'lamp1'; ${lamps}.dispatchEvent(new Event('change'))`);
         await hand.drag('lit', 'p0', [p(2.8, 0, 1.5), p(2.2, 0, 1)]);
         check(await last(hand, 'lights.txt') === `lit lamp1 in p0 ${px([p(2.8, 0, 1.5), p(2.2, 0, 1)])}`, await last(hand, 'lights.txt'));
         await hand.drag('unlit', 'p0', [p(3.8, 0, 2.2), p(3.5, 0, 2)]);

@@ -89,7 +89,7 @@ class App {
         this.picture.forget();
         if (!texts) return;
         const changes = {};
-        for (const name of this.texts.names().filter((n) => SCRIPT_FILES.test(n))) {
+        for (const name of this.texts.names().filter((n) => LENGTH_FILES.test(n))) {
             const text = Script.scaled(this.texts.get(name), by);
             if (text !== this.texts.get(name)) changes[name] = text;
         }
@@ -354,6 +354,11 @@ class App {
     colour() { return (this.forms.colour || '#3355aa').match(/\w\w/g).map((h) => parseInt(h, 16) / 255)
         .map((v) => Script.number(v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4, 3)).join(' '); }
     named() { return (this.forms.name || '').trim(); }
+    /* The lamp that the next mark is of: the one that was chosen, else the last one. */
+    lamp() {
+        const lamps = Script.lamps(this.texts.get('lights.txt'));
+        return lamps.includes(this.named()) ? this.named() : lamps[lamps.length - 1];
+    }
     newLamp() { return this.forms.name = this.newName('lamp'); }
     markName(kind) { return this.named() || this.newName(kind); }
     onFloor() { return this.file === 'scale.txt'; }

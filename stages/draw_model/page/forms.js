@@ -77,14 +77,26 @@ class FormsPanel {
         if (EDIT_FILES.test(this.app.file)) options.append(field('colour', 'colour to paint', this.colour ||
             '#3355aa', 'color', (v) => { this.colour = v; }));
         if (this.app.file === 'lri.txt') this.cornerFields(options);
-        else if (/^(scale|axes_fix|lights|materials)\.txt$/.test(this.app.file)) this.nameField(options);
+        else if (this.app.file === 'lights.txt') this.lampField(options);
+        else if (/^(scale|axes_fix|materials)\.txt$/.test(this.app.file)) this.nameField(options);
         if (options.children.length) this.element.append(options);
     }
 
-    /* Which lamp, mark or material the next gesture is of; those that there are, are proposed. */
+    /* Which lamp the next lit or unlit place, or line, is of. */
+    lampField(form) {
+        const lamps = Script.lamps(this.app.texts.get('lights.txt')), label = document.createElement('label'),
+            choice = document.createElement('select');
+        if (!lamps.length) return;
+        choice.name = 'lamp';
+        for (const n of lamps) choice.append(new Option(n, n, false, n === this.app.lamp()));
+        choice.onchange = () => { this.name = choice.value; };
+        label.append('Lit, Unlit and Cone line are of ', choice);
+        form.append(label);
+    }
+
+    /* Which mark or material the next gesture is of; those that there are, are proposed. */
     nameField(form) {
-        const what = {'lights.txt': 'lamp that is lit or unlit', 'materials.txt': 'name of the material'}[this.app.file] ||
-            'name of the next mark, if it shall have one';
+        const what = this.app.file === 'materials.txt' ? 'name of the material' : 'name of the next mark, if it shall have one';
         const name = field('name', what, this.name || '', 'text', (v) => { this.name = v; });
         const known = document.createElement('datalist');
         known.id = 'known-names';
@@ -213,9 +225,11 @@ class SuggestedPanel {
             offer(statement, () => this.left.splice(i, 1));
         });
         /* what is doubtful stands there as a comment; it can be accepted too */
+        const isStatement = (note) => /^(wall|door|passage|window|room|box|join|extend|disk|area|lit|unlit|line) \S+ .*\d/.test(note);
         this.after.forEach((note, i) => {
-            if (/^(wall|door|passage|window|room|box|join|extend|disk|area|lit|unlit|line) \S+ .*\d/.test(note)) offer(note, () => this.after.splice(i, 1));
-            else say(note);
+            if (!isStatement(note)) return say(note);
+            const from = i && !isStatement(this.after[i - 1]) ? i - 1 : i; /* what is said of it goes with it */
+            return offer(note, () => this.after.splice(from, i + 1 - from));
         });
         this.element.append(box);
     }

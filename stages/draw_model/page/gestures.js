@@ -10,7 +10,8 @@ const TOOLS = [];
 /* id, key, label, files (of which names the tool writes), form, hint, make */
 function addTool(id, key, label, files, form, hint, make) { TOOLS.push({id, key, label, files, form, hint, make}); }
 
-const SCRIPT_FILES = /^(model|edits\/.+)\.txt$/, EDIT_FILES = /^edits\//;
+const SCRIPT_FILES = /^(model|edits\/.+)\.txt$/, EDIT_FILES = /^edits\//, 
+    LENGTH_FILES = /^(model|edits\/.+|objects|lights|tour)\.txt$/;
 
 /* "in PHOTO X0 Y0 X1 Y1", the upper left corner first. */
 function inRectangle(app, [a, b]) {
@@ -225,13 +226,13 @@ addTool('area', '', 'Square lamp', inFile('lights.txt'), 'corners', 'Set its fou
         : {error: 'A square lamp has four corners.'});
 for (const [kind, words] of [['lit', 'that the lamp lights'], ['unlit', 'that the lamp does not light']])
     addTool(kind, '', kind[0].toUpperCase() + kind.slice(1), inFile('lights.txt'), 'rectangle',
-        `Drag a rectangle ${words}, on one dull material; the lamp's name is below.`,
-        (app, points) => app.named() ? `${kind} ${app.named()} ${inRectangle(app, points)}`
-            : {error: 'Give the name of the lamp below.'});
+        `Drag a rectangle ${words}, on one dull material; which lamp is below.`,
+        (app, points) => app.lamp() ? `${kind} ${app.lamp()} ${inRectangle(app, points)}`
+            : {error: 'Mark a lamp first: Round lamp or Square lamp.'});
 addTool('cone', '', 'Cone line', inFile('lights.txt'), 'line',
     "Set a line across the edge of the lamp's cone, on one surface.",
-    (app, points) => app.named() ? `line ${app.named()} ${inPixels(app, points)}`
-        : {error: 'Give the name of the lamp below.'});
+    (app, points) => app.lamp() ? `line ${app.lamp()} ${inPixels(app, points)}`
+        : {error: 'Mark a lamp first: Round lamp or Square lamp.'});
 addTool('material', '', 'Region', inFile('materials.txt'), 'corners',
     'Set the corners of a region of one material; Enter twice ends.',
     (app, points) => points.length > 2 ? `material ${app.named() || app.newName('material')} ${inPixels(app, points)}`

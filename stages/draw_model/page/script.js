@@ -110,6 +110,9 @@ const Script = {
         return names;
     },
 
+    /* The lamps that a text marks. */
+    lamps(text) { return Script.statements(text).map((s) => s.words).filter((w) => /^(disk|area)$/.test(w[0]) && w[1]).map((w) => w[1]); },
+
     /* A name that is not taken: door1, door2 ... */
     newName(kind, ...texts) {
         const taken = new Set(texts.flatMap((text) => [...Script.names(text)]));
@@ -121,7 +124,7 @@ const Script = {
     /* A script in another unit: its lengths times a factor. Pixels, angles, colours and factors stay. */
     scaled(text, factor) {
         const most = {from: 2, to: 2, at: 3, by: 3, thickness: 1, foot: 1, top: 1, bottom: 1, left: 1, right: 1, front: 1,
-            back: 1, floor: 1, ceiling: 1, slab: 1, glass: 1, leaf: 1, ridge: 1, off: 1};
+            back: 1, floor: 1, ceiling: 1, slab: 1, glass: 1, leaf: 1, ridge: 1, off: 1, speed: 1};
         return text.split('\n').map((line) => {
             const at = line.indexOf('#'), code = at < 0 ? line : line.slice(0, at);
             const isSlope = /^\s*(slope|gable)\s/.test(code);
