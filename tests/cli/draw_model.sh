@@ -88,6 +88,8 @@ the_page_is_drawn_in()
     verdicts
     timeout 100 node "$root/tests/browser/draw_marks.js" "$PWD/page" the_draft_shows_the_edited_room what_is_saved_is_in_the_folder >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
     verdicts
+    timeout 100 node "$root/tests/browser/draw_pictures.js" "$PWD/page" >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
+    verdicts
     node "$root/tests/browser/access.js" "$PWD/page/index.html" "$PWD/profile" app.ready >said.txt 2>&1 || { cat said.txt; fail "the browser ended"; }
     cat said.txt
     ! grep -q '^not ok' said.txt || fail "$(grep -m1 '^not ok' said.txt)"
