@@ -64,6 +64,7 @@ const tests = {
         check(await last(hand, 'lights.txt') === `disk lamp1 in p0 ${px([p(2.5, 0.3, 2.5)])} rim ${px([p(2.6, 0.3, 2.5)])} beta fit`, await last(hand, 'lights.txt'));
         await hand.clicks('area', 'p0', area);
         check(await last(hand, 'lights.txt') === `area lamp2 in p0 ${px(area)}`, await last(hand, 'lights.txt'));
+        check(/lamp1: .*dark beside its cone: drag a Lit rectangle.*\nlamp2: .*its own pixels tell its radiance/.test(await meant(hand)), await meant(hand));
         /* the lamp that was marked last, unless another one is named */
         await hand.drag('lit', 'p0', [p(2.8, 0, 1.5), p(2.2, 0, 1)]);
         check(/^lit lamp2 in p0 /.test(await last(hand, 'lights.txt')), await last(hand, 'lights.txt'));

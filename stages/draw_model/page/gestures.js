@@ -219,9 +219,9 @@ addTool('corner', '', 'Corner', inFile('axes_fix.txt'), 'pixel',
 addTool('edge', '', 'Edge', inFile('axes_fix.txt'), 'pixel',
     'Click a point on a line that ends in the corner with the name below.',
     (app, [p]) => `edge ${app.markName('corner')} ${app.photoId()} ${app.px(p[0])} ${app.px(p[1])}`);
-addTool('disk', '', 'Round lamp', inFile('lights.txt'), 'line', 'Set the middle of the lamp, then a point of its rim.',
+addTool('disk', '', 'Round lamp', inFile('lights.txt'), 'line', 'Set the middle of the lamp, then a point of its rim. If it hangs, add "off" and its distance from the ceiling to its line.',
     (app, [a, b]) => `disk ${app.newLamp()} in ${app.photoId()} ${app.px(a[0])} ${app.px(a[1])} rim ${app.px(b[0])} ${app.px(b[1])} beta fit`);
-addTool('area', '', 'Square lamp', inFile('lights.txt'), 'corners', 'Set its four corners, in order.',
+addTool('area', '', 'Square lamp', inFile('lights.txt'), 'corners', 'Set its four corners, in order. If it hangs, add "off" and its distance from the ceiling to its line.',
     (app, points) => points.length === 4 ? `area ${app.newLamp()} ${inPixels(app, points)}`
         : {error: 'A square lamp has four corners.'});
 for (const [kind, words] of [['lit', 'that the lamp lights'], ['unlit', 'that the lamp does not light']])

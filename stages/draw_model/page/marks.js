@@ -203,8 +203,9 @@ class Marks {
                 if (middle && beta > 0) this.cone({at: middle, normal: lamp ? lamp.normal : [0, 0, -1], beta}, w[1]);
                 const marks = (kind) => list.filter((m) => m[0] === kind && m[1] === w[1]).length;
                 const count = {lit: marks('lit'), unlit: marks('unlit'), line: marks('line')};
-                const more = !count.lit ? '; enough for make lights, surer with Lit rectangles'
-                    : w[0] === 'disk' && !count.line ? '; a Cone line finds its cone' : '';
+                const more = count.lit ? w[0] === 'disk' && !count.line ? '; a Cone line finds its cone' : ''
+                    : w[0] === 'disk' ? '; a spot is dark beside its cone: drag a Lit rectangle, or accept what make lights proposes, after another make draw'
+                    : '; its own pixels tell its radiance, surer with Lit rectangles';
                 this.say(`${w[1]}: ${lamp
                     ? `radiance ${lamp.radiance.map((v) => +v.toPrecision(3)).join(' ')}, cone of ${lamp.beta.toFixed(1)} degrees, as make lights fitted it`
                     : middle ? 'make lights will fit its radiance' : 'its pixel shows no surface of the model: build the rooms first'}; ${count.lit} lit, ${count.unlit} unlit, ${count.line} cone lines${more}.`);
