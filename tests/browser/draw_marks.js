@@ -252,6 +252,11 @@ const tests = {
         await hand.page.run('ids.forEach((id, i) => { app.photos[i].id = id; }); app.listPhotos(); app.openPhoto(0)');
         check(JSON.stringify(listed.slice(0, 6)) === JSON.stringify(['hall', '60° right', '60° left', 'Photos', 'p2', 'p3']), JSON.stringify(listed));
         check(name === 'hall_yaw060: panorama hall, 60° right', name);
+        /* two that were taken from one place, by their cameras, and two that only have such names */
+        await hand.page.run("app.placeOf = (i) => [[0, 0, 1], [0, 0, 1], [1, 0, 1], [2, 0, 1]][i]; ['pano_1_p000', 'pano_1_p060', 'img_2', 'img_3'].forEach((id, i) => { app.photos[i].id = id; }); app.listPhotos()");
+        const placed = await hand.page.run("[...document.querySelectorAll('#photos > *')].map((e) => e.textContent)");
+        await hand.page.run('delete app.placeOf; ids.forEach((id, i) => { app.photos[i].id = id; }); app.listPhotos(); app.openPhoto(0)');
+        check(JSON.stringify(placed.slice(0, 6)) === JSON.stringify(['pano_1', 'p000', 'p060', 'Photos', 'img_2', 'img_3']), JSON.stringify(placed));
     },
 
     async everything_has_a_name_and_contrast(hand) {

@@ -404,7 +404,7 @@ class App {
             button.type = 'button';
             image.src = this.pictures.small(p.id);
             image.alt = '';
-            const face = this.faceOf(p.id);
+            const face = this.faceOf(i);
             button.append(image, face ? face.turn : p.id);
             if (face) button.setAttribute('aria-label', `${p.id}: panorama ${face.of}, ${face.turn}`);
             button.onclick = () => this.openPhoto(i);
@@ -414,18 +414,30 @@ class App {
         el('photos').replaceChildren(...this.buttons);
         /* faces of one panorama were taken from one place */
         this.photos.forEach((p, i) => {
-            const of = (k) => (this.photos[k] && this.faceOf(this.photos[k].id) || {}).of;
+            const of = (k) => (this.photos[k] && this.faceOf(k) || {}).of;
             if (of(i) && of(i) !== of(i - 1)) this.buttons[i].before(title(of(i)));
             else if (i && !of(i) && of(i - 1) && !p.isReference) this.buttons[i].before(title('Photos'));
         });
         if (first >= 0) this.buttons[first].before(title('Reference images'));
     }
 
-    /* {of: the panorama, turn: where it looks} of a photo that is cut out of a panorama, by its name; null of others */
-    faceOf(id) {
-        const face = /^(.+)_yaw(\d{3})$/.exec(id), turn = face && +face[2];
-        if (!face || turn % 60 || turn > 300) return null;
+    /* {of: the panorama, turn: where it looks} of a photo that is cut out of a panorama, by its name, or one of several
+     * NAME_PART that were taken from one place; null of others */
+    faceOf(i) {
+        const {id} = this.photos[i], face = /^(.+)_yaw(\d{3})$/.exec(id), turn = face && +face[2];
+        if (!face || turn % 60 || turn > 300) {
+            const part = /^(.+)_([^_]+)$/.exec(id), from = part && this.placeOf(i);
+            const isBeside = (k) => this.photos[k] && !this.photos[k].isReference && this.photos[k].id.startsWith(part[1] + '_') &&
+                away(from, this.placeOf(k) || [Infinity, 0, 0]) < 1e-6 * this.live.height();
+            return from && (isBeside(i - 1) || isBeside(i + 1)) ? {of: part[1], turn: part[2]} : null;
+        }
         return {of: face[1], turn: !turn ? 'ahead' : turn <= 180 ? `${turn}° right` : `${360 - turn}° left`};
+    }
+
+    /* Where a photo was taken; null: it has no camera. */
+    placeOf(i) {
+        const p = this.photos[i], ray = !p.isReference && this.live.ray(i, p.width / 2, p.height / 2);
+        return ray ? [...ray].slice(0, 3) : null;
     }
 
     openPhoto(i) {
