@@ -32,7 +32,7 @@ W.WITNESSES = 12;
 W.VOTE = `layout(location=0) in vec3 p; layout(location=1) in vec2 place; layout(location=3) in float slack;
 uniform mat4 clip, moved, toView[12]; uniform vec4 stands[12], sizes[12]; uniform vec3 eye; uniform int own, count;
 uniform float spacing; uniform highp sampler2DArray sight; uniform int lit; uniform vec3 low, high;
-uniform highp sampler3D volume;
+uniform highp sampler3D volume; uniform vec2 sure;
 out vec2 uv, vote; out vec3 light;
 void main() {
     uv = place;
@@ -61,7 +61,7 @@ void main() {
         if (mine) vote.x = weight;
     }
     if (agreeing > 0.)
-        vote.y = smoothstep(.45, .75, agreeing / (agreeing + denied)) * smoothstep(.2, .45, confirmed / agreeing);
+        vote.y = smoothstep(sure.x, sure.y, agreeing / (agreeing + denied)) * smoothstep(.2, .45, confirmed / agreeing);
     vote.x *= .01;
 }`;
 
@@ -411,7 +411,8 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
     /* p: what to draw:
      *   camera, box (x y width height of the canvas), part (of its pixels along each side: less while it must be
      * quick), solid, sets: [first, second] viewpoint or null, share, vita, rules, outdoors, panes (where it is seen; null: anywhere), light: {set, most},
-     * clutter: {draws: [{texture, buffer, first, count, moved, own, eye}], witnesses}, grid, photos: [{view, texture, alpha, change}], objects,
+     * clutter: {draws: [{texture, buffer, first, count, moved, own, eye}], witnesses}, grid,
+     * sure: shares of the votes from which on furniture begins to show, and is whole, photos: [{view, texture, alpha, change}], objects,
      * made (0, or 1: colours of origin), kinds, near, far */
     paint(p) {
         const gl = this.gl, {camera} = p, clip = W.clipMatrix(camera, p.near, p.far),
@@ -596,6 +597,7 @@ ${i ? LINEAR : ''}${i && W.shaders[name][1].includes('hatch(') ? HATCH : ''}`;
                 ...votes,
                 clip,
                 spacing: p.grid,
+                sure: p.sure,
                 lit: volume && pass ? 1 : 0,
                 volume: 4,
                 low: volume ? volume.low : [0, 0, 0],

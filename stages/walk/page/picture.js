@@ -107,6 +107,7 @@ const drawModel = (camera, m, box, fixed = {}) => {
         relitKinds,
         clutter: clutterDraws(made.clutter, m, camera),
         grid: scene.grid,
+        sure: above ? [0.6, 0.9] : [0.45, 0.75], // from above, what few photographs agree on is a rag
         photos,
         objects: made.objects.length ? made.objects : null,
         near: above ? 0.05 * size : 0.01 * size,
