@@ -27,6 +27,7 @@
 #include "common/light/sobol.h"
 #include "common/math/numbers.h"
 
+static const double ACROSS = 0.7; /* cosine to a lamp's normal */
 enum { SUN_RAYS = 16, LAMP_RAYS = 64, LEAST_WINDOW_RAYS = 16, CHUNK = 16 };
 
 /* What one thread works with. */
@@ -258,9 +259,10 @@ bool rows_sees_sun(const struct model_field *f, struct gather_point p, struct ve
 
 /* ------------------------------------------------------------------------------------------------------------ lamps */
 
-/* What place (u, v) of a lamp sends to the point; *reach: where along *direction a surface begins to hide it. */
+/* What place (u, v) of a lamp sends to the point; *reach: where along *direction a surface that is parallel to it does
+ * not hide it any more; *distance: where it is. */
 static double lamp_sends(const struct source *s, const struct lamp *l, const double u[2], struct vec3 *direction,
-                         double *reach)
+                         double *reach, double *distance)
 {
     double a = 2 * u[0] - 1, b = 2 * u[1] - 1;
     if (l->shape == LAMP_DISK) {
@@ -269,30 +271,41 @@ static double lamp_sends(const struct source *s, const struct lamp *l, const dou
     }
     const struct vec3 at = vec3_add(l->centre, vec3_add(vec3_scale(l->x, a), vec3_scale(l->y, b)));
     const struct vec3 to = vec3_sub(at, s->from);
-    const double distance = vec3_length(to);
-    if (!(distance > 0)) return 0;
-    *direction = vec3_scale(to, 1 / distance);
+    *distance = vec3_length(to);
+    if (!(*distance > 0)) return 0;
+    *direction = vec3_scale(to, 1 / *distance);
     const double cosine = -vec3_dot(*direction, l->normal), rise = vec3_dot(*direction, s->point.normal);
     if (!(cosine > 0 && rise > 0)) return 0;
-    *reach = distance - s->job->groups->field->reach / cosine;
-    return rgb_luminance(lamp_radiance(l, vec3_scale(*direction, -1))) * cosine * rise / (distance * distance);
+    *reach = *distance - s->job->groups->field->reach / cosine;
+    return rgb_luminance(lamp_radiance(l, vec3_scale(*direction, -1))) * cosine * rise / (*distance * *distance);
+}
+
+/* Whether a surface hides a place of a lamp at a distance. Beyond `reach` only a surface across the lamp's plane does,
+ * such as a wall that an edit puts under it: the ceiling that the lamp lies on may be in front of it by an error. */
+static bool is_hidden(const struct source *s, struct vec3 direction, double distance, double reach, struct vec3 normal)
+{
+    const struct ray_scene *scene = &s->job->groups->field->model.rays;
+    struct ray_hit hit;
+    if (!(reach > 0)) return false;
+    if (ray_scene_blocked(scene, s->from, direction, reach)) return true;
+    return ray_scene_hit(scene, s->from, direction, &hit) && hit.t < distance &&
+           fabs(vec3_dot(hit.normal, normal)) < ACROSS;
 }
 
 /* The share of a lamp's light that reaches the point. */
 static double lamp_share(const struct source *s, const struct lamp *l, int lamp, int rays)
 {
-    const struct ray_scene *scene = &s->job->groups->field->model.rays;
     struct sobol points = sobol_make(&s->rng, 2000 + (uint64_t)lamp, rays);
     double all = 0, seen = 0;
     for (int i = 0; i < rays; i++) {
         struct vec3 direction;
-        double u[4], reach;
+        double u[4], reach, distance;
         points.sample = (uint32_t)i;
         sobol_group(&points, 3, u);
-        const double sent = lamp_sends(s, l, u, &direction, &reach);
+        const double sent = lamp_sends(s, l, u, &direction, &reach, &distance);
         if (!(sent > 0)) continue;
         all += sent;
-        if (!(reach > 0) || !ray_scene_blocked(scene, s->from, direction, reach)) seen += sent;
+        if (!is_hidden(s, direction, distance, reach, l->normal)) seen += sent;
     }
     return all > 0 ? seen / all : 0;
 }

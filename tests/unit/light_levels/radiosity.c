@@ -52,6 +52,37 @@ static void a_closed_room_keeps_the_energy_of_its_lamp(void **state)
     release(&r);
 }
 
+/* A thin wall stands under the middle of a lamp that lies on the ceiling, or a centimetre above it: each side has the
+ * light of half the lamp. */
+static void a_wall_under_a_lamp_hides_the_part_beyond_it(void **state)
+{
+    static const struct box divided[] = {
+        ROOM_OUTSIDE, ROOM_INSIDE, {"across", "across", {-0.001, -2, -2}, {0.001, 2, 2}, false}};
+    static const struct gather_point points[] = {{{-1, 0.2, -1.99}, {0, 0, 1}}, {{1, -0.3, 0}, {-1, 0, 0}}};
+    (void)state;
+    for (int above = 0; above < 2; above++) {
+        struct room r;
+        start(&r, divided, 3);
+        r.field.reach = 0.05;
+        add_lamp(&r);
+        r.lamp.shape = LAMP_QUAD;
+        r.lamp.centre = vec3_make(0, 0, 2 + 0.01 * above);
+        r.lamp.x = vec3_make(0, -0.5, 0);
+        r.lamp.y = vec3_make(0.5, 0, 0);
+        trace(&r, 50, 16, 0);
+        struct light_rows rows = rows_at(&r, points, 2, 16);
+        for (int i = 0; i < 2; i++) {
+            struct lamp half = r.lamp;
+            half.centre.x = i ? 0.25 : -0.25;
+            half.y = vec3_make(0.25, 0, 0);
+            const double wanted = lamp_irradiance(&half, points[i].at, points[i].normal).g;
+            assert_near((double)rows.direct[3 * (size_t)r.groups.count * (size_t)i + 1] / wanted, 1, 0.01);
+        }
+        rows_release(&rows);
+        release(&r);
+    }
+}
+
 /* A window's lower corner at the height of a horizontal point, D in front of it: W to one side, H up. Irradiance of a
  * sky of luminance 1 (first), and of one of sin(altitude) (second), the inner integral in closed form. */
 static void window_light(double to[2], double d, double w, double h)
@@ -251,6 +282,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(form_factors_sum_to_one_and_areas_to_the_rooms),
         cmocka_unit_test(a_closed_room_keeps_the_energy_of_its_lamp),
+        cmocka_unit_test(a_wall_under_a_lamp_hides_the_part_beyond_it),
         cmocka_unit_test(a_window_gives_the_sky_component_of_the_closed_form),
         cmocka_unit_test(reflected_daylight_agrees_with_the_split_flux_formula),
         cmocka_unit_test(patches_of_the_sky_sum_to_the_photographed_sky_with_all_reflections),
