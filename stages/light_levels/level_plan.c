@@ -1,8 +1,7 @@
 /* level_plan.c - see level_plan.h.
  *
- * Each point of a work plane is a square of its spacing, coloured by the logarithm of its value between the least
- * and the most of all rooms (at most a factor of 1000 apart). Isolines are at 1, 2, 3 and 5 times powers of ten: in
- * each square of four points a level cuts the sides where it lies between their values, at the place of linear
+ * Each point of a work plane is a square of its spacing, in the colour of its value (level_scale.h). In each square of
+ * four points a level cuts the sides where it lies between their values, at the place of linear
  * interpolation. Every line has its level once a room. */
 #include "stages/light_levels/level_plan.h"
 
@@ -11,50 +10,20 @@
 #include <stdlib.h>
 
 #include "common/base/outfile.h"
-#include "common/image/false_colour.h"
 #include "common/model/plan_sheet.h"
-
-enum { LEVELS_MOST = 32 };
-static const double SPAN = 1000;
+#include "stages/light_levels/level_scale.h"
 
 struct drawing {
     const struct level_picture *picture;
     const struct sensors *sensors;
     struct plan_sheet sheet;
-    double low, high;
-    double levels[LEVELS_MOST];
-    int level_count;
+    struct level_scale scale;
 };
-
-static void find_levels(struct drawing *d)
-{
-    static const double steps[] = {1, 2, 3, 5};
-    d->low = INFINITY;
-    d->high = 0;
-    for (int a = 0; a < d->sensors->area_count; a++)
-        for (int i = 0; d->sensors->areas[a].kind == SENSOR_WORK_PLANE && i < d->sensors->areas[a].count; i++) {
-            const double v = d->picture->values[d->sensors->areas[a].first + i];
-            d->low = fmin(d->low, v);
-            d->high = fmax(d->high, v);
-        }
-    d->low = fmax(d->low, d->high / SPAN);
-    if (!(d->high > 0)) return;
-    for (int e = (int)floor(log10(d->low)); e <= (int)ceil(log10(d->high)); e++)
-        for (int k = 0; k < 4; k++) {
-            const double level = steps[k] * pow(10, e);
-            if (level > d->low && level < d->high && d->level_count < LEVELS_MOST) d->levels[d->level_count++] = level;
-        }
-}
-
-static double ramp_place(const struct drawing *d, double v)
-{
-    return d->high > d->low && v > 0 ? log(fmax(v, d->low) / d->low) / log(d->high / d->low) : 0;
-}
 
 static void put_square(const struct drawing *d, double x, double y, double side, double value)
 {
     unsigned char c[3];
-    colour_of_ramp(ramp_place(d, value), c);
+    level_scale_colour(&d->scale, value, c);
     fprintf(d->sheet.to, "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"#%02x%02x%02x\"/>\n",
             plan_sheet_x(&d->sheet, x - side / 2), plan_sheet_y(&d->sheet, y + side / 2), d->sheet.scale * side,
             d->sheet.scale * side, c[0], c[1], c[2]);
@@ -143,7 +112,7 @@ static enum status put_area(const struct drawing *d, const struct sensor_area *a
     if (make_lattice(&l, d->sensors, a, err)) return err->status;
     for (int i = a->first; i < a->first + a->count; i++)
         put_square(d, d->sensors->points[i].at.x, d->sensors->points[i].at.y, a->step, d->picture->values[i]);
-    for (int k = 0; k < d->level_count; k++) put_level(d, &l, d->levels[k]);
+    for (int k = 0; k < d->scale.line_count; k++) put_level(d, &l, d->scale.lines[k]);
     free(l.point);
     return ST_OK;
 }
@@ -168,30 +137,43 @@ static void put_places(const struct drawing *d)
 
 static void put_title(const struct drawing *d)
 {
+    const struct sensors *s = d->sensors;
+    double low = INFINITY, high = 0;
     char text[256];
-    snprintf(text, sizeof text, "%s: %.3g to %.3g %s on the work planes", d->picture->title, d->low, d->high,
+    for (int a = 0; a < s->area_count; a++)
+        for (int i = 0; s->areas[a].kind == SENSOR_WORK_PLANE && i < s->areas[a].count; i++) {
+            low = fmin(low, d->picture->values[s->areas[a].first + i]);
+            high = fmax(high, d->picture->values[s->areas[a].first + i]);
+        }
+    snprintf(text, sizeof text, "%s: %.3g to %.3g %s on the work planes", d->picture->title, fmin(low, high), high,
              d->picture->unit);
     plan_sheet_put_text(&d->sheet, (d->sheet.low[0] + d->sheet.high[0]) / 2, d->sheet.high[1] - 24 / d->sheet.scale,
                         "name", text);
 }
 
+/* In the margin below the plan. */
+static void put_key(const struct drawing *d)
+{
+    const double width = d->sheet.scale * (d->sheet.high[0] - d->sheet.low[0]);
+    const double bottom = d->sheet.scale * (d->sheet.high[1] - d->sheet.low[1]);
+    level_scale_put_key(&d->scale, d->sheet.to, 0.08 * width, bottom - 44, 0.8 * width);
+}
+
 enum status level_plan_write(const struct level_picture *picture, const struct sensors *sensors,
                              const struct model_plan *plan, const char *path, struct err *err)
 {
-    struct drawing d = {.picture = picture, .sensors = sensors};
+    struct drawing d = {
+        .picture = picture, .sensors = sensors, .scale = level_scale_of(picture->unit, picture->annual)};
     struct outfile f = {0};
     if (outfile_open(&f, path, err)) return err->status;
-    find_levels(&d);
     plan_sheet_fit(&d.sheet, plan);
-    plan_sheet_begin(&d.sheet, f.fp, "Light levels",
-                     ".level{fill:none;stroke:#fff;stroke-width:1.6}"
-                     ".number,.place{paint-order:stroke;stroke:#fff;stroke-width:3px;font-size:13px}"
-                     ".place{font-weight:600}");
+    plan_sheet_begin(&d.sheet, f.fp, "Light levels", LEVEL_STYLES);
     plan_sheet_put_plan(&d.sheet, plan);
     for (int k = 0; !err->status && k < sensors->area_count; k++)
         if (sensors->areas[k].kind == SENSOR_WORK_PLANE) put_area(&d, &sensors->areas[k], err);
     put_places(&d);
     put_title(&d);
+    put_key(&d);
     plan_sheet_end(&d.sheet);
     if (!err->status) outfile_commit(&f, err);
     outfile_discard(&f);

@@ -8,6 +8,7 @@
 struct level_picture {
     const char *title, *unit;
     const double *values;
+    bool annual; /* in % of the hours of a year */
 };
 
 enum status level_plan_write(const struct level_picture *picture, const struct sensors *sensors,

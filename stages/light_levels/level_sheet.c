@@ -132,23 +132,32 @@ static enum status add_faces(struct levels_job *j, const struct reading *r, cons
 static enum status draw(const struct levels_job *j, const struct reading *r, const double *values, struct err *err)
 {
     char path[FILE_PATH];
-    const struct level_picture picture = {r->name, r->unit, values};
+    const struct level_picture picture = {r->name, r->unit, values, !strncmp(r->name, "year-", 5)};
     if (!j->sensors.count ||
         product_path_in(path, j->out, PRODUCT_LIGHT_PLAN, &(struct product_key){.name = r->name}, err))
         return err->status;
     return level_plan_write(&picture, &j->sensors, &j->plan, path, err);
 }
 
+static enum status draw_views(const struct levels_job *j, const struct reading *r, const struct state_weights *w,
+                              struct err *err)
+{
+    const struct level_views_state state = {r->name, r->unit, {r->factors[0], r->factors[1]}, w};
+    return level_views_draw(&j->views, &j->light, &state, j->out, err);
+}
+
 /* ----------------------------------------------------------------------------------------------------------- states */
 
-static enum status add_daylight_factor(struct levels_job *j, const struct reading *overcast, double *values,
-                                       struct err *err)
+static enum status add_daylight_factor(struct levels_job *j, const struct reading *overcast,
+                                       const struct state_weights *w, double *values, struct err *err)
 {
     struct reading r = *overcast;
     r.name = "daylight-factor";
     r.unit = "%";
+    for (int k = 0; k < 2; k++) r.factors[k] = daylight_factor(r.factors[k], STATE_OVERCAST_LUX);
     for (int i = 0; i < j->sensors.count; i++) values[i] = daylight_factor(values[i], STATE_OVERCAST_LUX);
-    return add_areas(j, &r, values, err) ? err->status : draw(j, &r, values, err);
+    if (add_areas(j, &r, values, err) || draw(j, &r, values, err)) return err->status;
+    return draw_views(j, &r, w, err);
 }
 
 static enum status add_state(struct levels_job *j, int number, double *values, struct err *err)
@@ -168,8 +177,9 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
                 level_points_sum(sums, &j->levels, i, &w, j->light.groups.field);
                 values[i] = r.factors[0] * sums[0] + r.factors[1] * sums[1];
             }
-            if (!add_areas(j, &r, values, err) && !add_faces(j, &r, &w, err)) draw(j, &r, values, err);
-            if (!err->status && number == STATE_OVERCAST) add_daylight_factor(j, &r, values, err);
+            if (!add_areas(j, &r, values, err) && !add_faces(j, &r, &w, err) && !draw(j, &r, values, err))
+                draw_views(j, &r, &w, err);
+            if (!err->status && number == STATE_OVERCAST) add_daylight_factor(j, &r, &w, values, err);
         }
     }
     level_weights_release(&w);

@@ -19,6 +19,8 @@ void levels_release(struct levels_job *j)
     sheet_release(&j->sheet);
     sheet_release(&j->before);
     level_points_release(&j->levels);
+    level_views_release(&j->views);
+    cli_list_release(&j->files.shown.names);
     lux_scale_release(&j->scale);
     weather_release(&j->weather);
     sensors_release(&j->sensors);
@@ -76,7 +78,7 @@ enum status levels_run(struct levels_job *j, struct err *err)
     if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, &j->scene.metre,
                      err) ||
         level_points_make(&j->levels, &j->light, j->sensors.points, j->sensors.count, &j->params, err) ||
-        write_others(j, err))
+        write_others(j, err) || level_views_make(&j->views, &j->files.shown, &j->scene.axes, &j->light, &j->prov, err))
         return err->status;
     return level_sheet_make(j, err);
 }

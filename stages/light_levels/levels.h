@@ -5,6 +5,7 @@
 #include "common/daylight/lux_scale.h"
 #include "common/daylight/weather.h"
 #include "stages/light_levels/level_sums.h"
+#include "stages/light_levels/level_views.h"
 #include "stages/light_levels/sensors.h"
 #include "stages/light_levels/sheet.h"
 
@@ -12,6 +13,7 @@ struct levels_files {
     struct light_change_files light;
     const char *plan, *places, *states, *weather, *points, *before, *scale;
     bool table; /* of `points`: all states */
+    struct level_view_files shown;
 };
 
 /* Everything but the paths is owned. */
@@ -27,6 +29,7 @@ struct levels_job {
     struct level_light light;
     struct sensors sensors;
     struct level_points levels; /* of the sensors */
+    struct level_views views;
     struct light_sheet sheet, before;
     struct lux_scale scale;
     struct weather weather;

@@ -5,6 +5,7 @@
  *         OUTDOORS, LIGHTS, REFERENCES/ID.exr what lies outside; lamps and openings
  *         THINGS/things.txt, volume.exr       furniture
  *         EDITED, MAP, OBJECTS, SCENE/FILE.obj of an edit: its model, textures and objects
+ *         VIEWS/, PICTURES/VIEW.jpg           photographs, or pictures of the edit, to draw over
  *         PLACES, STATES, WEATHER             named places; states of lamps and sky; an EPW file
  *         FILE.ies beside STATES              photometry of planned lamps
  *         SCALE                               how many cd/m2 a radiance of 1 is
@@ -12,6 +13,7 @@
  * writes  OUT/levels.txt, levels.exr          illuminance at each point from each group of light
  *         OUT/quantities.csv, openings.csv    areas of faces; openings with their sizes
  *         OUT/STATE.svg                       illuminance of the work planes on the floor plan
+ *         OUT/STATE.PHOTO.svg                 illuminance of what a photograph shows, over the photograph
  *         OUT/sheet.tsv                       illuminance of rooms, faces and places in each state */
 #include "common/base/cli.h"
 #include "stages/light_levels/levels.h"
@@ -49,6 +51,11 @@ int main(int argc, char **argv)
         CLI_STR("points", &job.files.points, CLI_OPTIONAL,
                 "instead: print the photographed irradiance at points, X Y Z NX NY NZ a line, in the views' frame"),
         CLI_FLAG("table", &job.files.table, "with --points: print their illuminance in each state instead"),
+        CLI_STR("views", &job.files.shown.views, CLI_OPTIONAL, "folder of cameras and views, for pictures"),
+        CLI_LIST("photo", &job.files.shown.names, CLI_OPTIONAL,
+                 "with --views: photo to draw illuminance over; repeat for several"),
+        CLI_STR("pictures", &job.files.shown.pictures, CLI_OPTIONAL,
+                "folder of pictures of the edit, which are drawn over where they exist"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write to"),
         CLI_PARAMS(levels_param_table, &job.params, NULL),
         CLI_END,

@@ -1,5 +1,9 @@
 /* rules.c - light levels of the room as it is, and with EDIT after an edit. */
+#include <string.h>
+
 #include "common/graph/scene_rules.h"
+
+enum { SPREAD = 4 }; /* photos to draw over where LUX_PHOTOS names none */
 
 static void say_room(struct graph *g, const struct scene_facts *f, const char *model)
 {
@@ -36,6 +40,41 @@ static void say_scripts(struct graph *g, const struct scene_facts *f)
     if (*scene_setting("WEATHER")) rule_variable(g, "--weather", "WEATHER");
 }
 
+/* Photos to draw over: those of LUX_PHOTOS, all, or four spread over the list. Pictures of an edit stand for them where
+ * `make remodel` has drawn any; edit NULL: the unedited room. */
+static void say_photos(struct graph *g, const struct scene_facts *f, const char *edit)
+{
+    const struct view_groups *all = &f->viewpoints;
+    const int spread = all->count < SPREAD ? all->count : SPREAD;
+    const char *pictures = edit ? graph_text(g, "remodel/%s/pictures", edit) : NULL;
+    struct name_list named = {0};
+    bool drawn = false;
+    name_list_add_words(&named, scene_setting("LUX_PHOTOS"), graph_err(g));
+    for (int i = 0; all->count && i < named.count; i++)
+        if (strcmp(named.names[i], "all") != 0 && strcmp(named.names[i], "none") != 0 &&
+            !name_list_has(&all->names, named.names[i]))
+            graph_refuse(g, "LUX_PHOTOS=%s: found %s, wanted photos of this scene, all or none.",
+                         scene_setting("LUX_PHOTOS"), named.names[i]);
+    rule_needs(g, graph_stamp(g, "lux_photos.txt", scene_setting("LUX_PHOTOS")));
+    rule_takes_cameras(g);
+    rule_needs(g, PATH(g, LENSES));
+    rule_needs_set(g, "views");
+    for (int i = 0, next = 0; i < all->count; i++) {
+        const struct photo_views *p = &all->photos[i];
+        const bool is_spread = next < spread && i == next * all->count / spread;
+        next += is_spread;
+        if (!(named.count ? name_list_has(&named, "all") || name_list_has(&named, p->photo) : is_spread)) continue;
+        rule_option(g, "--photo", p->photo);
+        for (int k = 0; edit && k < p->count; k++) {
+            if (!path_is_file(PATH(g, PICTURE_JPEG, .pictures = pictures, .name = p->views[k]))) continue;
+            rule_needs(g, PATH(g, PICTURE_RECORD, .pictures = pictures, .name = p->views[k]));
+            drawn = true;
+        }
+    }
+    if (drawn) rule_option(g, "--pictures", graph_own(g, pictures));
+    name_list_release(&named);
+}
+
 static void edit_rule(struct graph *g, const struct scene_facts *f, const char *edit)
 {
     const char *edited = graph_text(g, "remodel/%s", edit), *lux = graph_text(g, "lux/%s", edit);
@@ -49,6 +88,7 @@ static void edit_rule(struct graph *g, const struct scene_facts *f, const char *
     rule_takes(g, "--objects", PATH(g, OBJECTS, .model = edited));
     rule_option(g, "--scene", f->folder);
     say_scripts(g, f);
+    say_photos(g, f, edit);
     rule_takes(g, "--before", PATH(g, LIGHT_SHEET));
     rule_option(g, "--out", FOLDER(g, LIGHT_SHEET, .lux = lux));
 }
@@ -63,6 +103,7 @@ RULES(light_levels)
     rule_makes(g, PATH(g, LIGHT_SHEET));
     say_room(g, f, "model");
     say_scripts(g, f);
+    say_photos(g, f, NULL);
     rule_option(g, "--out", FOLDER(g, LIGHT_SHEET));
     for (int i = 0; *scene_setting("EDIT") && i < f->drawn_edits.count; i++) edit_rule(g, f, f->drawn_edits.names[i]);
 }
