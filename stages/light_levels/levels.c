@@ -10,6 +10,7 @@
 #include "common/base/log.h"
 #include "common/product/product.h"
 #include "stages/light_levels/level_file.h"
+#include "stages/light_levels/level_script.h"
 #include "stages/light_levels/level_sheet.h"
 #include "stages/light_levels/level_table.h"
 #include "stages/light_levels/quantities.h"
@@ -37,6 +38,7 @@ void levels_release(struct levels_job *j)
 static enum status read_inputs(struct levels_job *j, struct err *err)
 {
     const struct levels_files *f = &j->files;
+    if (f->day && level_date_read(&j->day, f->day, err)) return err->status;
     if (f->places && place_list_read(&j->places, f->places, &j->prov, err)) return err->status;
     if (f->before && sheet_read(&j->before, f->before, &j->prov, err)) return err->status;
     if (f->scale && lux_scale_read(&j->scale, f->scale, &j->prov, err)) return err->status;
@@ -58,6 +60,22 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
     return ST_OK;
 }
 
+static enum status write_script(const struct levels_job *j, struct err *err)
+{
+    const struct level_script s = {.points = &j->levels,
+                                   .sensors = &j->sensors,
+                                   .plan = &j->plan,
+                                   .light = &j->light,
+                                   .states = &j->states,
+                                   .params = &j->params,
+                                   .scale = &j->scale,
+                                   .day = j->files.day ? &j->day : NULL,
+                                   .metric = j->scene.axes.metric};
+    char path[FILE_PATH];
+    if (product_path_in(path, j->out, PRODUCT_LIGHT_SCRIPT, &(struct product_key){0}, err)) return err->status;
+    return level_script_write(&s, path, err);
+}
+
 /* Beside the sheet, which comes last: if it is new, so are the others. */
 static enum status write_others(struct levels_job *j, struct err *err)
 {
@@ -68,7 +86,8 @@ static enum status write_others(struct levels_job *j, struct err *err)
         quantities_write(&j->light, j->scene.axes.metric, path, err) ||
         product_path_in(path, j->out, PRODUCT_OPENING_SCHEDULE, &key, err))
         return err->status;
-    return quantities_write_openings(&j->plan, j->scene.axes.metric, path, err);
+    if (quantities_write_openings(&j->plan, j->scene.axes.metric, path, err)) return err->status;
+    return write_script(j, err);
 }
 
 enum status levels_run(struct levels_job *j, struct err *err)

@@ -11,7 +11,7 @@
 
 struct levels_files {
     struct light_change_files light;
-    const char *plan, *places, *states, *weather, *points, *before, *scale;
+    const char *plan, *places, *states, *weather, *points, *before, *scale, *day;
     bool table; /* of `points`: all states */
     struct level_view_files shown;
 };
@@ -33,6 +33,7 @@ struct levels_job {
     struct light_sheet sheet, before;
     struct lux_scale scale;
     struct weather weather;
+    struct sun_time day; /* where files.day names one */
 };
 
 /* Reads what the files name, computes, and writes the products below `out`. */

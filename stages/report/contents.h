@@ -126,7 +126,7 @@ struct contents {
     struct lens_list lenses;
     const char *folder; /* of the scene */
     bool has_photos, has_views;
-    bool has_remodel_page, has_walk, has_draw; /* remodel/, walk/, draw/index.html exist */
+    bool has_remodel_page, has_walk, has_draw, has_levels; /* remodel/, walk/, draw/, lux/index.html exist */
 
     struct rooms rooms; /* before and after each change */
     struct tour_card *tours;

@@ -65,6 +65,7 @@ enum status contents_read(struct contents *c, const struct contents_sources *fro
     char page[FILE_PATH];
     c->has_remodel_page = contents_product(page, folder, PRODUCT_REMODEL_PAGE, NULL);
     c->has_walk = contents_product(page, folder, PRODUCT_WALK_PAGE, NULL);
+    c->has_levels = contents_product(page, folder, PRODUCT_LEVELS_PAGE, NULL);
     c->has_draw = contents_product(page, folder, PRODUCT_DRAW_PAGE, NULL);
     return read_runs(c, from, err);
 }

@@ -37,6 +37,7 @@ static enum status put_people_head(struct page *page, const char *scene, const c
     fputs("</p>\n<ul class=\"doors\">\n", to);
     put_door(to, c->has_walk, "walk/index.html", "Walk through the rooms", false);
     put_door(to, c->has_remodel_page, "remodel/index.html", "All about each change", true);
+    put_door(to, c->has_levels, "lux/index.html", "How bright it is, by lamp and hour", true);
     put_door(to, c->has_draw, "draw/index.html", "Draw on the photographs", true);
     put_door(to, true, numbers, "How it was made, in numbers", true);
     fputs("</ul>\n</header>\n<main>\n", to);

@@ -9,7 +9,8 @@
  *         SCRIPTS/E.txt                  what edits say of themselves
  *         PHOTOS/FILE                    the photographs, for thumbnails
  *         DEFAULTS                       the default parameters; the page marks those that differ
- *         PAGE/{page.css,numbers.css,page.js}   styles and scripts, which go into the pages
+ *         FOLDER/lux                     with --levels: light by groups, pictures, tables
+ *         PAGE/{page.css,numbers.css,page.js,...}   styles and scripts, which go into the pages
  * writes  page/NAME.{jpg,png,svg} beside OUT   pictures, named by what they show
  *         page/numbers.html beside OUT   the page of numbers; not with --remodel
  *         OUT                            the page, last. Then pictures of an older page are removed */
@@ -19,6 +20,7 @@
 #include "common/base/outfile.h"
 #include "common/product/product.h"
 #include "stages/report/page.h"
+#include "stages/report/page_levels.h"
 #include "stages/report/page_remodel.h"
 
 struct job {
@@ -83,6 +85,15 @@ static enum status write_remodel_page(struct job *job, const struct remodel_sour
     return err->status;
 }
 
+/* The page of light levels has no pictures of its own. */
+static enum status write_levels_page(struct job *job, const char *folder, struct err *err)
+{
+    const struct levels_sources from = {job->scene, folder, job->back};
+    struct writing w = {0};
+    if (!begin_page(&w, job, job->out, "", "../", err)) levels_page_write(&w.page, &from, err);
+    return end_page(&w, job, err);
+}
+
 /* The folder `page` beside the page. */
 static enum status find_folder(struct job *job, struct err *err)
 {
@@ -93,12 +104,15 @@ static enum status find_folder(struct job *job, struct err *err)
     return outfile_make_folders(job->folder, err);
 }
 
-static enum status check_usage(bool remodel, const struct contents_sources *from, const char *back, const char *quality,
-                               struct err *err)
+static enum status check_usage(bool levels, bool remodel, const struct contents_sources *from, const char *back,
+                               const char *quality, struct err *err)
 {
-    if (remodel ? from->stages || from->defaults : !from->photos || !from->stages)
-        return err_set(err, ST_USAGE, "wanted --photos and --stages, or --remodel without --stages; see --help.");
-    if ((quality || back) && !remodel) return err_set(err, ST_USAGE, "--back and --quality go with --remodel.");
+    if (levels && remodel) return err_set(err, ST_USAGE, "wanted --remodel or --levels, not both.");
+    if (remodel || levels ? from->stages || from->defaults : !from->photos || !from->stages)
+        return err_set(err, ST_USAGE,
+                       "wanted --photos and --stages, or --remodel or --levels without --stages; see --help.");
+    if (quality && !remodel) return err_set(err, ST_USAGE, "--quality goes with --remodel.");
+    if (back && !remodel && !levels) return err_set(err, ST_USAGE, "--back goes with --remodel or --levels.");
     return ST_OK;
 }
 
@@ -106,7 +120,7 @@ int main(int argc, char **argv)
 {
     const char *quality = NULL;
     struct job job = {.parts = "stages/report/page"};
-    bool remodel = false;
+    bool remodel = false, levels = false;
     struct contents_sources from = {0};
     const struct cli_opt opts[] = {
         CLI_ABOUT("Writes two HTML pages about a scene: what was made, for people, and how, in numbers."),
@@ -121,8 +135,9 @@ int main(int argc, char **argv)
         CLI_STR("page", &job.parts, CLI_OPTIONAL, "folder of the pages' parts: styles and scripts"),
         CLI_FLAG("remodel", &remodel,
                  "instead: the page of remodelled rooms, each edit with its plan, films and files"),
+        CLI_FLAG("levels", &levels, "instead: the page of light levels, of what make lux has made"),
         CLI_STR("back", &job.back, CLI_OPTIONAL,
-                "with --remodel: address of the scene's page, to link to, relative to OUT"),
+                "with --remodel or --levels: address of the scene's page, to link to, relative to OUT"),
         CLI_STR("quality", &quality, CLI_OPTIONAL,
                 "with --remodel: quality of the run, for the commands that the page names; default: default"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "HTML file to write; its pictures go into the folder page beside it"),
@@ -131,7 +146,8 @@ int main(int argc, char **argv)
     struct provenance prov = {0};
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "report", opts, &prov, &err) == CLI_RUN &&
-        !check_usage(remodel, &from, job.back, quality, &err) && !find_folder(&job, &err)) {
+        !check_usage(levels, remodel, &from, job.back, quality, &err) &&
+        !(levels ? write_levels_page(&job, from.folder, &err) : find_folder(&job, &err)) && !levels) {
         const struct remodel_sources edits = {{from.folder, from.shared, from.photos, from.scripts}, quality};
         if (!(remodel ? write_remodel_page(&job, &edits, &err) : write_scene_pages(&job, &from, &err)))
             page_remove_old(job.folder, &job.pictures);

@@ -90,6 +90,30 @@ static void remodel_page_rule(struct graph *g, const struct scene_facts *f)
     name_list_release(&true_edits);
 }
 
+/* The page of light levels, of the edits of this run and of those that have been made. */
+static void levels_page_rule(struct graph *g, const struct scene_facts *f)
+{
+    const char *scene_page = graph_own(g, "stamp/scene-page.txt");
+    graph_goal(g, "lux", PATH(g, LEVELS_PAGE));
+    graph_rule(g, "levels");
+    rule_makes(g, PATH(g, LEVELS_PAGE));
+    rule_needs(g, PATH(g, LIGHT_SHEET, .lux = "lux"));
+    for (int i = 0; i < f->edits.count; i++) {
+        const char *sheet = PATH(g, LIGHT_SHEET, .lux = graph_text(g, "lux/%s", f->edits.names[i]));
+        const bool wanted = *scene_setting("EDIT") && name_list_has(&f->drawn_edits, f->edits.names[i]);
+        if (wanted || path_is_file(sheet)) rule_needs(g, sheet);
+    }
+    rule_needs(g, scene_page);
+    rule_option(g, "--levels", "");
+    rule_option(g, "--scene", f->scene);
+    rule_option(g, "--folder", f->own);
+    rule_option(g, "--shared", f->shared);
+    if (says_yes(scene_page)) rule_option(g, "--back", "../index.html");
+    rule_option(g, "--page", "stages/report/page");
+    rule_option(g, "--out", PATH(g, LEVELS_PAGE));
+    graph_list_if(g, GRAPH_ALWAYS_SHOWN, PATH(g, LEVELS_PAGE), false);
+}
+
 RULES(report)
 {
     graph_step(g, "report", STEP_ONE, steps_before(g, f));
@@ -98,4 +122,5 @@ RULES(report)
     graph_goal(g, "remodel-page", PATH(g, REMODEL_PAGE));
     scene_page_rule(g, f);
     remodel_page_rule(g, f);
+    if (f->has_model) levels_page_rule(g, f);
 }

@@ -3,12 +3,14 @@
 project light_levels
 photos set --size 128x96 >/dev/null
 boxed t textures
+printf 'window pane on east from -5 5 to 5 12\n' >>scenes/t/model.txt
+sed -i 's/^set slab 1$/set slab 1\nset glass 0.1/' scenes/t/model.txt
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[light_levels]\npatches = 300\nrays = 64\npoint_rays = 64\nspacing = 0.5\nmargin = 0.25\n' >>scenes/t/scene.cfg
 printf 'remodel-script 1\n# A dark floor.\npaint floor/hall 0.05 0.05 0.05\n' >scenes/t/edits/dark.txt
 printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
 printf 'remodel-states 1\nsite 52.5 13.4 1\nstate noon lamps off sky clear 6 21 12\n' >scenes/t/states.txt
-m lux EDIT=dark
+m lux EDIT=dark LUX_PHOTOS='photo_1 photo_2'
 O=out/t
 inputs=(--config scenes/t/scene.cfg --model "$O/model/model.txt" --plan "$O/model/plan.txt" --axes "$O/model/axes.txt" --vita "$O/vita" --outdoors "$O/outdoors/outdoors.exr")
 
@@ -43,7 +45,7 @@ make_lux_has_a_sheet_of_the_room_and_of_the_edit()
     # a dark floor takes light away: the last column is the mean minus that before
     awk -F '\t' '$1 == "photographed" && $2 == "work-plane" { n++; if (!($13 < 0 && $5 - $12 - $13 < 1e-3 * $12 + 1e-6)) bad = 1 } END { exit !n || bad }' "$e" ||
         { cat "$e"; fail "a dark floor takes no light away"; }
-    m lux EDIT=dark
+    m lux EDIT=dark LUX_PHOTOS='photo_1 photo_2'
     ! grep -q light_levels log || { cat log; fail "a second make made it again"; }
 }
 
@@ -84,6 +86,26 @@ planned_lamps_shine_in_the_states_that_name_them()
     levels 1 'none.ies' --states bad.txt --out made
     printf 'remodel-lights 1\ndisk new 0 5 8 0 0 -1 1 50 50 50 90 0\n' >same.txt
     levels 1 'has a lamp of that name' --lights same.txt --states planned.txt --out made
+}
+
+photographs_show_light_levels_with_a_key()
+{
+    local id=photo_1 f
+    for f in $O/lux/{photographed,overcast,daylight-factor,noon}."$id".svg $O/lux/dark/photographed."$id".svg; do
+        "$B/bin/verify" --file "$f" || fail "$f is not whole"
+        grep -q 'class="key"' "$f" && grep -q 'data:image/jpeg;base64,' "$f" || fail "$f has no key or photograph"
+    done
+    # one palette: the keys of the plan and of a photograph have the same colours
+    for f in photographed photographed."$id"; do grep -o 'fill="#[0-9a-f]*"/>$' "$O/lux/$f.svg" | tail -60 >"$f.key"; done
+    cmp photographed.key photographed."$id".key || fail "plan and photograph have different keys"
+    levels 1 'none-such' --views $O/views --photo none-such --out made
+}
+
+the_page_adds_groups_of_light_up()
+{
+    [ -s $O/lux/index.html ] || fail "make lux wrote no page"
+    command -v node >/dev/null && node -e "process.exit(require('$root/tests/browser/chromium.js').Chromium.find() ? 0 : 1)" || skip "chromium or node is not installed"
+    node "$root/tests/browser/levels_page.js" $O/lux dark >said.txt 2>&1 || { grep -v '^ok' said.txt; fail "the page fails"; }
 }
 
 lamps_add_up_and_bytes_do_not_depend_on_threads()
@@ -138,4 +160,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done

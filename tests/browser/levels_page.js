@@ -1,0 +1,166 @@
+// node levels_page.js LUX EDIT - opens the page of light levels, LUX/index.html, in Chromium; EDIT: one of its edits.
+//
+// What the page adds up is what sheet.tsv says; lamps are linear; hours, edits and points are reached by keys. Names,
+// contrast, width on a phone, links, size on disk, and an empty console; without scripts all pictures are linked.
+'use strict';
+const fs = require('fs');
+const os = require('os');
+const path = require('path');
+const {Chromium} = require('./chromium.js');
+const {CONTRAST, NAMELESS, deadLinks} = require('./page_checks.js');
+const folder = path.resolve(process.argv[2]), edit = process.argv[3], html = path.join(folder, 'index.html');
+let failed = 0;
+const check = (name, fine, why) => {
+    console.log(`${fine ? 'ok' : 'not ok'} ${name}${fine ? '' : `: ${why}`}`);
+    failed += !fine;
+};
+
+// Rows of work planes and places by state: {state: {"KIND PLACE": {mean, least, most, difference}}}
+const sheetOf = (file) => {
+    const [head, ...rows] = fs.readFileSync(file, 'utf8').trim().split('\n').filter((l) => l[0] !== '#')
+        .map((l) => l.split('\t'));
+    const found = {};
+    for (const r of rows) {
+        const row = Object.fromEntries(head.map((h, i) => [h, r[i]]));
+        if (row.kind !== 'work-plane' && row.kind !== 'place') continue;
+        (found[row.state] = found[row.state] || {})[`${row.kind} ${row.place}`] = row;
+    }
+    return found;
+};
+
+const set = (id, value) => `(() => {
+    const e = document.getElementById('${id}');
+    e.value = '${value}';
+    for (const name of ['input', 'change']) e.dispatchEvent(new Event(name, {bubbles: true}));
+})()`;
+const press = (id) => `document.getElementById('${id}').click()`;
+const ROWS = `(() => {
+    const p = window.levelsPage, v = p.variants[p.choice.edit];
+    return v.rows(v.values(p.choice)).map((r) => ({...r, key: r.kind + ' ' + r.name}));
+})()`;
+const TABLE = '[...document.querySelectorAll("#values tbody tr")].map((r) => [...r.cells].map((c) => c.textContent))';
+
+const near = (a, b) => Math.abs(a - b) <= 0.003 * Math.abs(b) + 1e-4;
+
+const compare = async (page, name, state, sheet) => {
+    const rows = await page.run(ROWS), wanted = sheet[state];
+    const bad = rows.filter((r) => !wanted[r.key] || !near(r.mean, +wanted[r.key].mean) ||
+        !near(r.least, +wanted[r.key].least) || !near(r.most, +wanted[r.key].most));
+    check(name, rows.length > 0 && !bad.length, JSON.stringify([bad[0], bad[0] && wanted[bad[0].key]]));
+};
+
+const tryTheSums = async (page, sheet) => {
+    await compare(page, 'the_page_begins_with_the_photographed_light', 'photographed', sheet);
+    await page.run(set('sky', 'none'));
+    await compare(page, 'without_a_sky_the_lamps_are_left', 'lamps', sheet);
+    await page.run(set('sky', 'photographed') + ';' + press('off'));
+    await compare(page, 'lamps_off_leaves_daylight', 'daylight', sheet);
+    await page.run(set('sky', 'overcast'));
+    await compare(page, 'an_overcast_sky_is_that_of_the_sheet', 'overcast', sheet);
+    await page.run(set('sky', 'none') + ';' + press('on'));
+    const full = await page.run(ROWS);
+    await page.run('document.querySelectorAll("#lamps input").forEach((e) => { e.value = 50; ' +
+        'e.dispatchEvent(new Event("input")); })');
+    const half = await page.run(ROWS);
+    check('dimmed_lamps_give_half', full.every((r, i) => near(2 * half[i].mean, r.mean)), JSON.stringify(half[0]));
+    await page.run(press('on'));
+};
+
+const tryTheHours = async (page) => {
+    await page.run(set('sky', 'hour'));
+    await page.run('document.getElementById("hour").focus()');
+    const look = `({clock: document.getElementById('clock').textContent, said: document.getElementById('said').textContent,
+        value: document.getElementById('hour').getAttribute('aria-valuetext')})`;
+    const noon = await page.run(look);
+    for (let i = 0; i < 4; i++) await page.key('ArrowRight');
+    const later = await page.run(look);
+    check('arrow_keys_change_the_hour', noon.clock === '12:00' && later.clock === '14:00', JSON.stringify([noon, later]));
+    check('the_light_changes_with_the_hour', noon.said !== later.said && /lx/.test(later.said), later.said);
+    check('the_hour_says_how_high_the_sun_is', /14:00, the sun is -?\d+ degrees high/.test(later.value), later.value);
+    const days = await page.run('[...document.getElementById("day").options].map((o) => o.textContent)');
+    check('solstices_and_equinox_are_there', ['21 December', '21 March', '21 June'].every((d) => days.includes(d)),
+        days.join(' '));
+    await page.run(set('sky', 'photographed'));
+};
+
+const tryTheEdit = async (page, sheet) => {
+    const number = await page.run(`[...document.getElementById('edit').options].find((o) => o.textContent ===
+        ${JSON.stringify(edit.replace(/[-_]/g, ' '))}).value`);
+    await page.run(set('edit', number));
+    await compare(page, 'the_edit_has_its_own_sheet', 'photographed', sheet);
+    const table = await page.run(TABLE), first = Object.values(sheet.photographed)[0];
+    const differs = Number(table[0][6].replace('−', '-').replace('+', ''));
+    check('the_table_has_the_difference', Math.abs(differs - +first.difference) <= 0.006 * Math.abs(+first.difference),
+        `${table[0].join(' ')}; wanted ${first.difference}`);
+    const ticks = 'document.getElementById("ticks").textContent';
+    await page.run(set('show', 'difference'));
+    check('the_difference_has_a_key_in_words', /as before/.test(await page.run(ticks)), await page.run(ticks));
+    await page.run(set('show', 'after'));
+    await page.run('document.getElementById("plan").focus()');
+    await page.key('ArrowRight');
+    const one = await page.run('document.getElementById("point").textContent');
+    await page.key('ArrowRight');
+    const two = await page.run('document.getElementById("point").textContent');
+    check('arrow_keys_read_points_of_the_plan', /At this point/.test(one) && /At this point/.test(two), `${one} ${two}`);
+    await page.run(set('edit', 0));
+};
+
+const tryThePictures = async (page) => {
+    const states = await page.run('[...document.getElementById("state").options].map((o) => o.value)');
+    await page.run(set('state', states[1]));
+    const shots = await page.run('[...document.querySelectorAll("#shots img")].map((i) => [i.getAttribute("src"), i.alt])');
+    check('a_state_has_pictures_of_photographs', shots.length > 0 && shots.every((s) => s[0].startsWith(`${states[1]}.`) &&
+        s[1].includes('Photograph')), JSON.stringify(shots));
+    check('a_picture_loads', await page.run('(async () => { const i = document.querySelector("#shots img"); ' +
+        'await i.decode(); return i.naturalWidth; })()') > 0, 'it does not');
+};
+
+const tryWithoutScripts = async (browser) => {
+    const page = await browser.page('about:blank');
+    await page.send('Emulation.setScriptExecutionDisabled', {value: true});
+    await page.send('Page.navigate', {url: `file://${html}`});
+    await new Promise((done) => setTimeout(done, 500));
+    const found = await page.run(`(() => {
+        const shown = (s) => [...document.querySelectorAll(s)].some((e) => e.offsetParent);
+        return {links: shown('.plain a'), canvas: shown('#plan')};
+    })()`);
+    check('without_scripts_all_pictures_are_linked', found.links && !found.canvas, JSON.stringify(found));
+};
+
+const main = async () => {
+    const profile = fs.mkdtempSync(path.join(os.tmpdir(), 'levels-browser-'));
+    const browser = await Chromium.open(profile);
+    const sheet = sheetOf(path.join(folder, 'sheet.tsv')), edited = sheetOf(path.join(folder, edit, 'sheet.tsv'));
+    try {
+        const page = await browser.page(`file://${html}`, 1280, 900);
+        const dead = await deadLinks(page, html), nameless = await page.run(NAMELESS);
+        check('all_links_lead_somewhere', !dead.length, dead.join(' '));
+        check('all_pictures_and_controls_have_names', !nameless.length, nameless.join(' '));
+        for (const scheme of ['light', 'dark']) {
+            await page.send('Emulation.setEmulatedMedia', {features: [{name: 'prefers-color-scheme', value: scheme}]});
+            const [ratio, where] = await page.run(CONTRAST);
+            check(`${scheme}_text_has_contrast`, ratio >= 4.5, `${ratio} in ${where}`);
+        }
+        await tryTheSums(page, sheet);
+        await tryTheHours(page);
+        await tryTheEdit(page, edited);
+        await tryThePictures(page);
+        check('the_console_is_empty', !page.errors.length, page.errors.join(' | '));
+        const phone = await browser.page(`file://${html}`, 390, 800);
+        const width = await phone.run('document.documentElement.scrollWidth');
+        check('the_page_fits_a_phone', width <= 390, `it is ${width} px wide`);
+        await tryWithoutScripts(browser);
+        const links = await page.run('[...document.querySelectorAll(".plain a")].map((a) => a.getAttribute("href"))');
+        const size = [...links.map(decodeURIComponent), 'index.html']
+            .reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
+        console.log(`# the page and its pictures: ${(size / 1e6).toFixed(2)} MB`);
+        check('the_page_takes_at_most_10_MB', size <= 10e6, `${size} bytes`);
+    } finally {
+        await browser.close(profile);
+    }
+    process.exit(failed ? 1 : 0);
+};
+main().catch((e) => {
+    console.log(`not ok the_page: ${e.stack}`);
+    process.exit(1);
+});
