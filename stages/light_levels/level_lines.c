@@ -71,61 +71,65 @@ static void part(struct lines *l, int a, int b)
     }
 }
 
-static void put_path(FILE *to, const char *class, const struct lines *l, const int *path, int count)
-{
-    double at[2];
-    fprintf(to, "<path class=\"%s\" d=\"", class);
-    for (int i = 0; i < count; i++) {
-        place_of(at, l, path[i]);
-        fprintf(to, "%s%.4g %.4g", i == 0 ? "M" : i == 1 ? "L" : " ", at[0], at[1]);
-    }
-    fputs("\"/>\n", to);
-}
-
-static void put_numbers(FILE *to, const struct lines *l, const int *path, int count)
-{
-    double length = LABEL_EVERY - LABEL_LEAST, before[2], at[2];
-    place_of(before, l, path[0]);
-    for (int i = 1; i < count; i++) {
-        place_of(at, l, path[i]);
-        length += hypot(at[0] - before[0], at[1] - before[1]);
-        if (length >= LABEL_EVERY) {
-            length = 0;
-            fprintf(to, "<text class=\"number\" x=\"%.1f\" y=\"%.1f\">%g</text>\n", at[0], at[1] + 4, l->level);
-        }
-        before[0] = at[0];
-        before[1] = at[1];
-    }
-}
-
-static void take_path(FILE *to, struct lines *l, int from, int *path)
+static void take_path(struct lines *l, int from, double (*path)[2], level_line_fn *fn, void *ctx)
 {
     int count = 0;
     for (int at = from; at >= 0;) {
         const int next = l->next[at][0];
-        path[count++] = at;
+        place_of(path[count++], l, at);
         if (next >= 0) part(l, at, next);
         at = next;
     }
-    if (count < PATH_LEAST) return;
-    put_path(to, "under", l, path, count);
-    put_path(to, "level", l, path, count);
-    put_numbers(to, l, path, count);
+    if (count >= PATH_LEAST) fn(ctx, (const double(*)[2])path, count);
 }
 
-enum status level_lines_put(FILE *to, const struct level_grid *g, double level, struct err *err)
+enum status level_lines_find(const struct level_grid *g, double level, level_line_fn *fn, void *ctx, struct err *err)
 {
     const int edges = 2 * g->width * g->height;
     struct lines l = {g, level, malloc(((size_t)edges + 1) * sizeof *l.next)};
-    int *path = malloc(((size_t)edges + 1) * sizeof *path);
-    if (!l.next || !path) err_nomem(err, "isolines", (size_t)edges * sizeof *l.next);
+    double(*path)[2] = malloc(((size_t)edges + 1) * sizeof *path);
+    if (!l.next || !path) err_nomem(err, "isolines", (size_t)edges * sizeof *path);
     for (int i = 0; !err->status && i < edges; i++) l.next[i][0] = l.next[i][1] = -1;
     for (int y = 0; !err->status && y + 1 < g->height; y++)
         for (int x = 0; x + 1 < g->width; x++) cut_square(&l, x, y);
     for (int closed = 0; !err->status && closed < 2; closed++) /* paths with ends first, then rings */
         for (int i = 0; i < edges; i++)
-            while (l.next[i][0] >= 0 && (closed || l.next[i][1] < 0)) take_path(to, &l, i, path);
+            while (l.next[i][0] >= 0 && (closed || l.next[i][1] < 0)) take_path(&l, i, path, fn, ctx);
     free(l.next);
     free(path);
     return err->status;
+}
+
+/* -------------------------------------------------------------------------------------------------------------- SVG */
+
+struct drawing {
+    FILE *to;
+    double level;
+};
+
+static void put_path(FILE *to, const char *class, const double (*at)[2], int count)
+{
+    fprintf(to, "<path class=\"%s\" d=\"", class);
+    for (int i = 0; i < count; i++) fprintf(to, "%s%.4g %.4g", i == 0 ? "M" : i == 1 ? "L" : " ", at[i][0], at[i][1]);
+    fputs("\"/>\n", to);
+}
+
+static void put_line(void *ctx, const double (*at)[2], int count)
+{
+    const struct drawing *d = ctx;
+    double length = LABEL_EVERY - LABEL_LEAST;
+    put_path(d->to, "under", at, count);
+    put_path(d->to, "level", at, count);
+    for (int i = 1; i < count; i++) {
+        length += hypot(at[i][0] - at[i - 1][0], at[i][1] - at[i - 1][1]);
+        if (length < LABEL_EVERY) continue;
+        length = 0;
+        fprintf(d->to, "<text class=\"number\" x=\"%.1f\" y=\"%.1f\">%g</text>\n", at[i][0], at[i][1] + 4, d->level);
+    }
+}
+
+enum status level_lines_put(FILE *to, const struct level_grid *g, double level, struct err *err)
+{
+    struct drawing d = {to, level};
+    return level_lines_find(g, level, put_line, &d, err);
 }

@@ -11,6 +11,7 @@
 
 #include "common/base/outfile.h"
 #include "common/model/plan_sheet.h"
+#include "stages/light_levels/level_lattice.h"
 #include "stages/light_levels/level_scale.h"
 
 struct drawing {
@@ -31,37 +32,6 @@ static void put_square(const struct drawing *d, double x, double y, double side,
 
 /* --------------------------------------------------------------------------------------------------------- isolines */
 
-/* The points of an area by column and row; -1: none. */
-struct lattice {
-    double x, y, step;
-    int width, height, *point; /* owned */
-};
-
-static enum status make_lattice(struct lattice *l, const struct sensors *s, const struct sensor_area *a,
-                                struct err *err)
-{
-    double high[2] = {-INFINITY, -INFINITY};
-    *l = (struct lattice){INFINITY, INFINITY, a->step, 0, 0, NULL};
-    for (int i = a->first; i < a->first + a->count; i++) {
-        l->x = fmin(l->x, s->points[i].at.x);
-        l->y = fmin(l->y, s->points[i].at.y);
-        high[0] = fmax(high[0], s->points[i].at.x);
-        high[1] = fmax(high[1], s->points[i].at.y);
-    }
-    l->width = (int)lround((high[0] - l->x) / a->step) + 1;
-    l->height = (int)lround((high[1] - l->y) / a->step) + 1;
-    const size_t count = (size_t)l->width * (size_t)l->height;
-    l->point = malloc(count * sizeof *l->point);
-    if (!l->point) return err_nomem(err, "points of a room", count * sizeof *l->point);
-    for (size_t i = 0; i < count; i++) l->point[i] = -1;
-    for (int i = a->first; i < a->first + a->count; i++) {
-        const int x = (int)lround((s->points[i].at.x - l->x) / a->step);
-        const int y = (int)lround((s->points[i].at.y - l->y) / a->step);
-        l->point[y * l->width + x] = i;
-    }
-    return ST_OK;
-}
-
 /* Where a level cuts the sides of a square: pairs of places. Corners are in order around it. */
 static int cut_square(double cuts[4][2], const double corner[4][2], const double value[4], double level)
 {
@@ -76,7 +46,7 @@ static int cut_square(double cuts[4][2], const double corner[4][2], const double
     return count;
 }
 
-static void put_level(const struct drawing *d, const struct lattice *l, double level)
+static void put_level(const struct drawing *d, const struct level_lattice *l, double level)
 {
     static const int around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     bool named = false;
@@ -108,12 +78,12 @@ static void put_level(const struct drawing *d, const struct lattice *l, double l
 
 static enum status put_area(const struct drawing *d, const struct sensor_area *a, struct err *err)
 {
-    struct lattice l;
-    if (make_lattice(&l, d->sensors, a, err)) return err->status;
+    struct level_lattice l;
+    if (level_lattice_make(&l, d->sensors, a, err)) return err->status;
     for (int i = a->first; i < a->first + a->count; i++)
         put_square(d, d->sensors->points[i].at.x, d->sensors->points[i].at.y, a->step, d->picture->values[i]);
     for (int k = 0; k < d->scale.line_count; k++) put_level(d, &l, d->scale.lines[k]);
-    free(l.point);
+    level_lattice_release(&l);
     return ST_OK;
 }
 

@@ -60,7 +60,7 @@ static bool sight_ray(struct vec3 *ray, const struct photo_sight *s, const struc
 struct looking_up {
     const struct view *view;
     const struct image *im; /* of three channels, or with a fourth that is 1 where the view shows the photo */
-    double *sum, *weight;
+    double *sum;            /* of R, G, B and weights */
 };
 
 static void look_up(const struct looking_up *l, int pixel, struct vec3 ray)
@@ -72,8 +72,8 @@ static void look_up(const struct looking_up *l, int pixel, struct vec3 ray)
     if (!(u >= 0 && u < 1 && v >= 0 && v < 1)) return;
     const float *rgb = image_at(l->im, (int)(u * l->im->width), (int)(v * l->im->height));
     if (l->im->channels == 4 && !(rgb[3] > 0.999f)) return;
-    l->sum[pixel] += p.z * luminance_precise(rgb);
-    l->weight[pixel] += p.z;
+    for (int c = 0; c < 3; c++) l->sum[4 * pixel + c] += p.z * (double)rgb[c];
+    l->sum[4 * pixel + 3] += p.z;
 }
 
 /* An edit's picture of the view. */
@@ -101,14 +101,14 @@ static enum status read_photo(struct level_view *v, const struct photo_sight *s,
                               const struct scene_cameras *cameras, struct provenance *prov, struct err *err)
 {
     const int pixels = v->width * v->height, first = photo_of_view(&cameras->set, &cameras->lenses, s->camera.view_idx);
-    double *sum = calloc(2 * (size_t)pixels + 1, sizeof *sum);
-    if (!sum) return err_nomem(err, "a photo", 2 * (size_t)pixels * sizeof *sum);
+    double *sum = calloc(4 * (size_t)pixels + 1, sizeof *sum);
+    if (!sum) return err_nomem(err, "a photo", 4 * (size_t)pixels * sizeof *sum);
     for (int k = 0; !err->status && k < cameras->set.view_count; k++) {
         struct image im = {0};
         struct vec3 ray;
         if (photo_of_view(&cameras->set, &cameras->lenses, k) != first) continue;
         read_view(&im, files, &cameras->set.views[k], prov, err);
-        const struct looking_up l = {&cameras->set.views[k], &im, sum, sum + pixels};
+        const struct looking_up l = {&cameras->set.views[k], &im, sum};
         for (int i = 0; !err->status && i < SAMPLES * pixels; i++) {
             const int x = i / SAMPLES % v->width, y = i / SAMPLES / v->width;
             if (sight_ray(&ray, s, v, x + 0.25 + 0.5 * (i & 1), y + 0.25 + 0.5 * (i >> 1 & 1)))
@@ -117,8 +117,10 @@ static enum status read_photo(struct level_view *v, const struct photo_sight *s,
         image_release(&im);
     }
     for (int i = 0; !err->status && i < pixels; i++) {
-        const double weight = sum[pixels + i];
-        v->photo[i] = weight > 0 ? (unsigned char)(255 * srgb_from_linear((float)(sum[i] / weight)) + 0.5f) : 0;
+        const double weight = sum[4 * i + 3];
+        for (int c = 0; c < 3; c++)
+            v->photo[3 * i + c] =
+                weight > 0 ? (unsigned char)(255 * srgb_from_linear((float)(sum[4 * i + c] / weight)) + 0.5f) : 0;
         if (!(weight > 0)) v->pixels[i].surface = NO_PHOTO;
     }
     free(sum);
@@ -173,7 +175,7 @@ static enum status make_view(struct level_view *v, const char *name, const struc
         name, lies ? high : wide, lies ? wide : high, model_from_world_point(axes, sight.camera.center), NULL, NULL};
     const size_t pixels = (size_t)wide * (size_t)high;
     v->pixels = malloc(pixels * sizeof *v->pixels);
-    v->photo = malloc(pixels);
+    v->photo = malloc(3 * pixels);
     if (!v->pixels || !v->photo) return err_nomem(err, "a photo", pixels * sizeof *v->pixels);
     const struct tracing t = {v, &sight, &light->patches};
     parallel_for((size_t)v->height, ROWS, trace_rows, (void *)&t);
@@ -281,7 +283,8 @@ void level_views_paint(unsigned char *rgb, const struct level_view *v, const flo
     const int pixels = v->width * v->height;
     for (int i = 0; i < pixels; i++) {
         unsigned char colour[3] = {255, 255, 255};
-        const double photo = v->photo[i] / 255.0;
+        const unsigned char *p = v->photo + 3 * i;
+        const double photo = (LUMINANCE_R * p[0] + LUMINANCE_G * p[1] + LUMINANCE_B * p[2]) / 255;
         const bool known = isfinite(values[i]);
         if (known) level_scale_colour(scale, (double)values[i], colour);
         for (int c = 0; c < 3; c++)

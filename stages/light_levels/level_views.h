@@ -22,7 +22,7 @@ struct level_view {
         float away;       /* distance of the surface */
         int surface;      /* the face; below -1: -2 - patch of furniture; -1: nothing; NO_PHOTO: beyond the photo */
     } * pixels;           /* owned */
-    unsigned char *photo; /* luminance as 8-bit sRGB; owned */
+    unsigned char *photo; /* sRGB, 3 bytes a pixel; owned */
 };
 enum { NO_PHOTO = -2147483647 - 1 };
 

@@ -10,6 +10,7 @@
 #include "common/base/log.h"
 #include "common/product/product.h"
 #include "stages/light_levels/level_file.h"
+#include "stages/light_levels/level_film.h"
 #include "stages/light_levels/level_script.h"
 #include "stages/light_levels/level_sheet.h"
 #include "stages/light_levels/level_table.h"
@@ -76,6 +77,25 @@ static enum status write_script(const struct levels_job *j, struct err *err)
     return level_script_write(&s, path, err);
 }
 
+/* The film of the day that was asked for: OUT/DATE.mp4. */
+static enum status write_film(const struct levels_job *j, struct err *err)
+{
+    const struct level_film f = {.points = &j->levels,
+                                 .sensors = &j->sensors,
+                                 .plan = &j->plan,
+                                 .light = &j->light,
+                                 .views = &j->views,
+                                 .states = &j->states,
+                                 .params = &j->params,
+                                 .weather = j->files.weather ? &j->weather : NULL,
+                                 .day = &j->day};
+    char path[FILE_PATH];
+    if (!j->files.day ||
+        product_path_in(path, j->out, PRODUCT_LIGHT_FILM, &(struct product_key){.name = j->files.day}, err))
+        return err->status;
+    return level_film_write(&f, path, err);
+}
+
 /* Beside the sheet, which comes last: if it is new, so are the others. */
 static enum status write_others(struct levels_job *j, struct err *err)
 {
@@ -97,7 +117,8 @@ enum status levels_run(struct levels_job *j, struct err *err)
     if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, &j->scene.metre,
                      err) ||
         level_points_make(&j->levels, &j->light, j->sensors.points, j->sensors.count, &j->params, err) ||
-        write_others(j, err) || level_views_make(&j->views, &j->files.shown, &j->scene.axes, &j->light, &j->prov, err))
+        level_views_make(&j->views, &j->files.shown, &j->scene.axes, &j->light, &j->prov, err) || write_film(j, err) ||
+        write_others(j, err))
         return err->status;
     return level_sheet_make(j, err);
 }

@@ -14,6 +14,7 @@
  *         OUT/quantities.csv, openings.csv    areas of faces; openings with their sizes
  *         OUT/STATE.svg                       illuminance of the work planes on the floor plan
  *         OUT/STATE.PHOTO.svg                 illuminance of what a photograph shows, over the photograph
+ *         OUT/DATE.mp4                        the day DATE as a film
  *         OUT/levels.js                       light by groups and hours, for the page of light levels
  *         OUT/sheet.tsv                       illuminance of rooms, faces and places in each state */
 #include "common/base/cli.h"
@@ -46,7 +47,7 @@ int main(int argc, char **argv)
         CLI_STR("places", &job.files.places, CLI_OPTIONAL, "named places, places.txt"),
         CLI_STR("states", &job.files.states, CLI_OPTIONAL, "states of lamps and sky, states.txt"),
         CLI_STR("weather", &job.files.weather, CLI_OPTIONAL, "weather of a year, an EPW file, for annual figures"),
-        CLI_STR("day", &job.files.day, CLI_OPTIONAL, "date for the page of light levels, YYYY-MM-DD"),
+        CLI_STR("day", &job.files.day, CLI_OPTIONAL, "date, YYYY-MM-DD: a film of that day, and its hours on the page"),
         CLI_STR("scale", &job.files.scale, CLI_OPTIONAL,
                 "cd/m2 of a radiance of 1, scale.txt; without it, light of the photographs is in their own unit"),
         CLI_STR("before", &job.files.before, CLI_OPTIONAL, "sheet.tsv of the unedited room, to compare with"),

@@ -37,6 +37,8 @@ static void say_scripts(struct graph *g, const struct scene_facts *f)
     for (int i = 0; i < webs.count; i++) rule_needs(g, graph_text(g, "%s/%s.ies", f->folder, webs.names[i]));
     name_list_release(&webs);
     rule_needs(g, graph_stamp(g, "weather.txt", scene_setting("WEATHER")));
+    rule_needs(g, graph_stamp(g, "lux_day.txt", scene_setting("DAY")));
+    if (*scene_setting("DAY")) rule_variable(g, "--day", "DAY");
     if (*scene_setting("WEATHER")) rule_variable(g, "--weather", "WEATHER");
 }
 

@@ -2,8 +2,9 @@
 FOLLOWS.light_levels := build_model find_things bake_vita bake_outdoors fit_lights update_vita calibrate_light
 READS.light_levels := both models, plan.txt, texture.txt and objects.txt, axes.txt, the VITA, the things, cameras, lenses and views, pictures of edits, outdoors.exr, lights/lights.txt and the reference images that it names; lux/scale.txt; scenes/NAME/places.txt and states.txt, and WEATHER, if there are any
 VARIABLES.light_levels := WEATHER
-SETTINGS.light_levels := LUX_PHOTOS
+SETTINGS.light_levels := LUX_PHOTOS DAY
 HELP.lux := + light levels of rooms and named places, of the room as it is and with EDIT=E after an edit: O/lux/sheet.tsv
 
 ## WEATHER=FILE: for `make lux`: weather of a year, an EPW file: adds sDA, ASE, useful daylight and hours of sun to the sheet
 ## LUX_PHOTOS="P Q": for `make lux`: photos to draw illuminance over; all: every photo; none (four, spread over the list)
+## DAY=2026-12-21: for `make lux`: date of a film of light levels over the day, and of hours on the page; needs the place in states.txt

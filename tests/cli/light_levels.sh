@@ -139,6 +139,19 @@ a_year_of_weather_has_its_figures()
     [ "$(cell two/june/sheet.tsv june work-plane "$(awk -F '\t' '$2 == "work-plane" { print $3; exit }' two/june/sheet.tsv)" 11)" = lx ] || fail "an hour of the weather has no lx"
 }
 
+a_day_is_a_film()
+{
+    levels 0 patches --states scenes/t/states.txt --views $O/views --photo photo_1 --day 2026-12-21 --out two/day
+    "$B/bin/verify" --file two/day/2026-12-21.mp4 || fail "the film is not whole"
+    # without refraction the sun is up from 8:22 to 15:47, so at 30 quarters of an hour
+    command -v ffprobe >/dev/null && ffprobe -v error -count_frames -show_entries stream=nb_read_frames -of csv=p=0 two/day/2026-12-21.mp4 >frames.txt && [ "$(tr -d ',' <frames.txt)" = 30 ] ||
+        { cat frames.txt; fail "wanted 30 frames"; }
+    levels 2 'wanted a date' --states scenes/t/states.txt --day 2026-02-30 --out made
+    levels 1 'site LATITUDE LONGITUDE ZONE' --day 2026-12-21 --out made
+    printf 'remodel-states 1\nsite 80 20 1\n' >polar.txt
+    levels 1 'the sun does not rise on 12-21' --states polar.txt --day 2026-12-21 --out made
+}
+
 errors_name_file_and_line()
 {
     printf 'remodel-places 1\nplace desk at 0\n' >bad.txt
@@ -160,4 +173,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done

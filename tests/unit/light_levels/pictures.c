@@ -156,12 +156,13 @@ static void days_have_the_hours_of_sunlight(void **state)
     assert_ok(level_days_make(&d, &berlin, &date, 2, &err), err);
     assert_int_equal(d.day_count, 4);
     assert_int_equal(d.days[0].month, 5);
-    /* sunrise and sunset on 21 December: 8:15 and 15:54, by the almanac; on 21 June 3:43 and 20:33 */
+    /* by the almanac from 8:15 to 15:54 on 21 December and from 3:43 to 20:33 on 21 June, with refraction, which
+     * makes up for seven minutes */
     const struct level_day *winter = &d.days[1], *summer = &d.days[3];
     assert_near(d.hours[winter->first].time.hour, 8.5, 0);
     assert_near(d.hours[winter->first + winter->count - 1].time.hour, 15.5, 0);
     assert_near(d.hours[summer->first].time.hour, 4, 0);
-    assert_near(d.hours[summer->first + summer->count - 1].time.hour, 20.5, 0);
+    assert_near(d.hours[summer->first + summer->count - 1].time.hour, 20, 0);
     for (int i = 0; i < d.hour_count; i++) assert_true(d.hours[i].sun.altitude > 0);
     level_days_release(&d);
     const struct state_list nowhere = {.north = 90};

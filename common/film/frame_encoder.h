@@ -1,0 +1,38 @@
+/* frame_encoder.h - 8-bit frames to H.264 with ffmpeg: yuv420p, BT.709, faststart; reproducible with the same version of
+ * ffmpeg.
+ *
+ *   struct frame_encoder e = {0};
+ *   frame_encoder_begin(&e, "film.mp4", 640, 480, 25, &(struct frame_quality){"medium", 18}, err);
+ *   frame_encoder_put(&e, rgb, err);            for each frame
+ *   frame_encoder_end(&e, err);                 the film is there, whole
+ *   frame_encoder_release(&e);                  after a failure: nothing is left */
+#ifndef REMODEL_FRAME_ENCODER_H
+#define REMODEL_FRAME_ENCODER_H
+
+#include "common/base/outfile.h"
+#include "common/base/process.h"
+
+struct frame_quality {
+    const char *preset; /* of x264 */
+    int crf;            /* 0 lossless .. 51 */
+};
+
+/* {0} is the empty state. */
+struct frame_encoder {
+    struct process ffmpeg;
+    struct outfile file;
+    size_t bytes; /* of a frame */
+    int written;  /* frames */
+    bool ended;   /* ffmpeg took no more */
+};
+
+/* ST_DATA: a side is odd; ST_IO: ffmpeg cannot be started. */
+enum status frame_encoder_begin(struct frame_encoder *e, const char *path, int width, int height, double fps,
+                                const struct frame_quality *quality, struct err *err);
+/* sRGB, interleaved. A frame that ffmpeg does not take is reported by frame_encoder_end(); *ended says so before. */
+void frame_encoder_put(struct frame_encoder *e, const unsigned char *rgb);
+/* Waits for ffmpeg and commits the file. ST_IO: it failed, or took fewer frames than `frames`. */
+enum status frame_encoder_end(struct frame_encoder *e, int frames, struct err *err);
+void frame_encoder_release(struct frame_encoder *e);
+
+#endif
