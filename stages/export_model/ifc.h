@@ -29,6 +29,7 @@ int ifc_points(struct ifc *f, const struct vec3 *points, int count);
 int ifc_put(struct ifc *f, const char *fmt, ...) PRINTF_LIKE(2, 3);
 /* Begins "#N=KIND('guid',$,'name'": the GUID is that of the kind and the name. */
 int ifc_begin(struct ifc *f, const char *kind, const char *name);
+int ifc_begin_of(struct ifc *f, const char *kind, const char *key, const char *name); /* the GUID is that of the key */
 enum status ifc_keep(struct ifc *f, struct ifc_ids *ids, int id);
 void ifc_put_ids(struct ifc *f, const struct ifc_ids *ids); /* "(#1,#2)" */
 const char *ifc_real(char text[40], double value);          /* a number as STEP wants it: with a point */
@@ -78,6 +79,17 @@ int ifc_opening(struct ifc *f, const char *name, int element, int shape);
 /* A door or window of a width and height; opening: that it fills, 0: none. shape 0: it has no body. */
 enum status ifc_filling(struct ifc *f, const char *kind, const char *name, int opening, int shape, const double size[2],
                         const char *type);
+
+/* ifc_quantities.c: a set of quantities of an element, such as Qto_WallBaseQuantities; key: of the element, for the
+ * GUID */
+
+struct ifc_quantity {
+    enum ifc_measure { IFC_LENGTH, IFC_AREA, IFC_VOLUME } measure;
+    const char *name;
+    double value; /* in model units */
+};
+void ifc_quantities(struct ifc *f, int element, const char *set, const char *key, const struct ifc_quantity *list,
+                    int count);
 
 /* ifc_walls.c, ifc_rooms.c */
 enum status ifc_walls(struct ifc *f); /* with their openings, doors and windows */

@@ -73,6 +73,16 @@ int ifc_opening(struct ifc *f, const char *name, int element, int shape)
     return id;
 }
 
+static void put_filling_quantities(struct ifc *f, int filling, const char *kind, const char *name, const double size[2])
+{
+    const struct ifc_quantity list[] = {{IFC_LENGTH, "Width", size[0]},
+                                        {IFC_LENGTH, "Height", size[1]},
+                                        {IFC_LENGTH, "Perimeter", 2 * (size[0] + size[1])},
+                                        {IFC_AREA, "Area", size[0] * size[1]}};
+    ifc_quantities(f, filling, strcmp(kind, "IFCWINDOW") ? "Qto_DoorBaseQuantities" : "Qto_WindowBaseQuantities", name,
+                   list, 4);
+}
+
 enum status ifc_filling(struct ifc *f, const char *kind, const char *name, int opening, int shape, const double size[2],
                         const char *type)
 {
@@ -84,5 +94,6 @@ enum status ifc_filling(struct ifc *f, const char *kind, const char *name, int o
         ifc_begin(f, "IFCRELFILLSELEMENT", relation);
         fprintf(f->to, ",$,#%d,#%d);\n", opening, id);
     }
+    put_filling_quantities(f, id, kind, name, size);
     return ifc_keep(f, &f->contained, id);
 }

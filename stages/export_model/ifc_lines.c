@@ -31,7 +31,7 @@ int ifc_put(struct ifc *f, const char *fmt, ...)
     return id;
 }
 
-static int begin(struct ifc *f, const char *kind, const char *key, const char *name)
+int ifc_begin_of(struct ifc *f, const char *kind, const char *key, const char *name)
 {
     char guid[23], text[1200];
     const int id = ifc_next(f);
@@ -42,7 +42,7 @@ static int begin(struct ifc *f, const char *kind, const char *key, const char *n
     return id;
 }
 
-int ifc_begin(struct ifc *f, const char *kind, const char *name) { return begin(f, kind, name, name); }
+int ifc_begin(struct ifc *f, const char *kind, const char *name) { return ifc_begin_of(f, kind, name, name); }
 
 enum status ifc_keep(struct ifc *f, struct ifc_ids *ids, int id)
 {
@@ -90,7 +90,7 @@ int ifc_element(struct ifc *f, const char *kind, const char *name, int shape, co
 
 int ifc_element_of(struct ifc *f, const char *kind, const char *key, const char *name, int shape, const char *rest)
 {
-    const int id = begin(f, kind, key, name);
+    const int id = ifc_begin_of(f, kind, key, name);
     fprintf(f->to, ",$,$,#%d,", f->placement);
     if (shape)
         fprintf(f->to, "#%d,$%s);\n", shape, rest);

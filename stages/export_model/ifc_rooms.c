@@ -167,6 +167,49 @@ static int put_polyhedron(struct ifc *f, const struct model_room *r, const struc
     return shape;
 }
 
+/* The area of a polygon, and the mean of a plane z = c[0] + c[1] x + c[2] y over it. */
+static double polygon_area(const double (*p)[2], int count, const double c[3], double *mean)
+{
+    double area = 0, x = 0, y = 0;
+    for (int i = 0; i < count; i++) {
+        const double *a = p[i], *b = p[(i + 1) % count], cross = a[0] * b[1] - b[0] * a[1];
+        area += cross / 2;
+        x += (a[0] + b[0]) * cross / 6;
+        y += (a[1] + b[1]) * cross / 6;
+    }
+    *mean = area != 0 ? c[0] + c[1] * x / area + c[2] * y / area : c[0];
+    return fabs(area);
+}
+
+static void put_space_quantities(struct ifc *f, int space, const struct model_room *r,
+                                 const struct ceiling_parts *parts)
+{
+    static const double level[3] = {0, 0, 0};
+    const double(*p)[2] = (const double(*)[2])parts->outline;
+    double perimeter = 0, walls = 0, volume = 0, ceiling = 0, mean, high = 0;
+    const double floor = polygon_area(p, parts->outline_count, level, &mean);
+    for (int i = 0; i < parts->outline_count; i++) {
+        const double *a = p[i], *b = p[(i + 1) % parts->outline_count], length = hypot(b[0] - a[0], b[1] - a[1]);
+        const double at_a = model_room_ceiling(r, a[0], a[1]) - r->floor;
+        perimeter += length;
+        walls += length * (at_a + model_room_ceiling(r, b[0], b[1]) - r->floor) / 2;
+        high = fmax(high, at_a);
+    }
+    for (int k = 0; k < r->ceilings; k++) {
+        const double *c = r->ceiling[k];
+        const double area = polygon_area((const double(*)[2])parts->corners[k], parts->counts[k], c, &mean);
+        volume += area * (mean - r->floor);
+        ceiling += area * sqrt(1 + c[1] * c[1] + c[2] * c[2]);
+        for (int i = 0; i < parts->counts[k]; i++)
+            high = fmax(high, c[0] + c[1] * parts->corners[k][i][0] + c[2] * parts->corners[k][i][1] - r->floor);
+    }
+    const struct ifc_quantity list[] = {{IFC_LENGTH, "Height", high},        {IFC_LENGTH, "GrossPerimeter", perimeter},
+                                        {IFC_AREA, "GrossFloorArea", floor}, {IFC_AREA, "NetFloorArea", floor},
+                                        {IFC_AREA, "GrossWallArea", walls},  {IFC_AREA, "GrossCeilingArea", ceiling},
+                                        {IFC_VOLUME, "GrossVolume", volume}, {IFC_VOLUME, "NetVolume", volume}};
+    ifc_quantities(f, space, "Qto_SpaceBaseQuantities", r->name, list, 8);
+}
+
 static enum status put_room(struct ifc *f, int room, const struct ceiling_parts *parts)
 {
     const struct model_room *r = &f->s->plan->rooms[room];
@@ -179,6 +222,7 @@ static enum status put_room(struct ifc *f, int room, const struct ceiling_parts 
         level ? ifc_prism(f, outline, parts->outline_count, floor, c[0] - r->floor) : put_polyhedron(f, r, parts);
     const int space = ifc_begin(f, "IFCSPACE", r->name);
     fprintf(f->to, ",$,$,#%d,#%d,$,.ELEMENT.,.SPACE.,$);\n", f->placement, shape);
+    put_space_quantities(f, space, r, parts);
     return f->err->status ? f->err->status : ifc_keep(f, &f->spaces, space);
 }
 

@@ -92,11 +92,32 @@ static enum status put_opening(struct ifc *f, const struct model_opening *o, con
 {
     static const double beyond = 0.01; /* past both faces, so that nothing thin stays */
     const int shape = wall_box(f, w, o->s, o->z, -beyond, w->thickness + 2 * beyond);
-    return put_filling(f, o, w, ifc_opening(f, o->name, wall, shape));
+    const int opening = ifc_opening(f, o->name, wall, shape);
+    const double width = fabs(o->s[1] - o->s[0]), height = o->z[1] - o->z[0];
+    const struct ifc_quantity list[] = {{IFC_LENGTH, "Width", width},
+                                        {IFC_LENGTH, "Height", height},
+                                        {IFC_LENGTH, "Depth", w->thickness},
+                                        {IFC_AREA, "Area", width * height},
+                                        {IFC_VOLUME, "Volume", width * height * w->thickness}};
+    ifc_quantities(f, opening, "Qto_OpeningElementBaseQuantities", o->name, list, 5);
+    return put_filling(f, o, w, opening);
+}
+
+/* Length and side of a wall, without its openings. */
+struct wall_size {
+    double length, height, side;
+};
+
+/* The area of a profile whose lower edge is level: that below its upper edge. */
+static double area_below(const double (*top)[2], int count, double foot)
+{
+    double area = 0;
+    for (int i = 0; i + 1 < count; i++) area += (top[i + 1][0] - top[i][0]) * ((top[i][1] + top[i + 1][1]) / 2 - foot);
+    return fabs(area);
 }
 
 /* The body of a wall along an axis. */
-static int put_body(struct ifc *f, int wall)
+static int put_body(struct ifc *f, int wall, struct wall_size *size)
 {
     const struct model_plan *plan = f->s->plan;
     const struct model_wall *w = &plan->walls[wall];
@@ -104,11 +125,37 @@ static int put_body(struct ifc *f, int wall)
     int count = 0, shape = 0;
     wall_reach(reach, plan, w);
     const double z[2] = {w->foot, w->top};
+    size->length = reach[1] - reach[0];
+    size->height = w->top - w->foot;
+    size->side = size->length * size->height;
     if (!wall_top_find(&top, &count, plan, wall, reach, f->err))
         shape = count ? put_profile(f, w, reach, (const double(*)[2])top, count)
                       : wall_box(f, w, reach, z, 0, w->thickness);
+    if (count) {
+        size->side = area_below((const double(*)[2])top, count, w->foot);
+        for (int i = 0; i < count; i++) size->height = fmax(size->height, top[i][1] - w->foot);
+    }
     free(top);
     return shape;
+}
+
+static void put_quantities(struct ifc *f, int id, int wall, const struct wall_size *size)
+{
+    const struct model_plan *plan = f->s->plan;
+    const struct model_wall *w = &plan->walls[wall];
+    double open = 0;
+    for (int o = 0; o < plan->opening_count; o++)
+        if (plan->openings[o].wall == wall)
+            open += fabs(plan->openings[o].s[1] - plan->openings[o].s[0]) *
+                    (plan->openings[o].z[1] - plan->openings[o].z[0]);
+    const struct ifc_quantity list[] = {{IFC_LENGTH, "Length", size->length},
+                                        {IFC_LENGTH, "Height", size->height},
+                                        {IFC_LENGTH, "Width", w->thickness},
+                                        {IFC_AREA, "GrossSideArea", size->side},
+                                        {IFC_AREA, "NetSideArea", size->side - open},
+                                        {IFC_VOLUME, "GrossVolume", size->side * w->thickness},
+                                        {IFC_VOLUME, "NetVolume", (size->side - open) * w->thickness}};
+    ifc_quantities(f, id, "Qto_WallBaseQuantities", w->name, list, 7);
 }
 
 enum status ifc_walls(struct ifc *f)
@@ -117,11 +164,14 @@ enum status ifc_walls(struct ifc *f)
     for (int i = 0; !f->err->status && i < plan->wall_count; i++) {
         const struct model_wall *w = &plan->walls[i];
         const bool along_axis = is_along_axis(w);
-        const int shape = along_axis ? put_body(f, i) : ifc_faces_of(f, "wall", w->name);
+        const double length = fabs(w->span[1] - w->span[0]), height = w->top - w->foot;
+        struct wall_size size = {length, height, length * height};
+        const int shape = along_axis ? put_body(f, i, &size) : ifc_faces_of(f, "wall", w->name);
         if (f->err->status) return f->err->status;
         if (!shape) continue;
         const int id = ifc_element(f, "IFCWALL", w->name, shape, ",.STANDARD.");
         ifc_keep(f, &f->contained, id);
+        put_quantities(f, id, i, &size);
         for (int o = 0; !f->err->status && o < plan->opening_count; o++) {
             if (plan->openings[o].wall != i) continue;
             /* the faces of a wall along no axis have its openings */

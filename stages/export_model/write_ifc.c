@@ -2,6 +2,7 @@
  *
  * Walls, slabs and spaces are extruded outlines (ifc_walls.c, ifc_rooms.c); an opening is a box that voids its wall or
  * slab, and a door or window fills it (ifc_fillings.c). Walls that are along no axis are the triangles of their faces.
+ * Walls, openings, doors, windows, spaces and coverings have their lengths, areas and volumes (ifc_quantities.c).
  * An object or a piece of furniture is an IfcFurniture of triangles in one colour (ifc_objects.c).
  * Photographic texture is on coverings: each face of the model is an IfcCovering of triangles, with the texture maps
  * that IFC4 defines for IfcTriangulatedFaceSet, so that readers without textures lose nothing of the building. */
@@ -93,8 +94,11 @@ static enum status put_covering(struct ifc *f, int face)
         const int shape = ifc_tessellation(f, &sets);
         /* faces of one name are told apart by their number */
         snprintf(name, sizeof name, "%s %d", solid_face_name(f->s->mesh, face), face);
-        ifc_keep(f, &f->contained,
-                 ifc_element(f, "IFCCOVERING", name, shape, covering_type(solid_face_name(f->s->mesh, face))));
+        const int id = ifc_element(f, "IFCCOVERING", name, shape, covering_type(solid_face_name(f->s->mesh, face)));
+        const double area = solid_mesh_area(f->s->mesh, face);
+        const struct ifc_quantity list[] = {{IFC_AREA, "GrossArea", area}, {IFC_AREA, "NetArea", area}};
+        ifc_keep(f, &f->contained, id);
+        ifc_quantities(f, id, "Qto_CoveringBaseQuantities", name, list, 2);
     }
     free(sets.list);
     return f->err->status;

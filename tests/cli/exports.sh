@@ -92,6 +92,44 @@ web_ifc_reads_a_gable()
     grep -q '^IFCOPENINGELEMENT 4 ' found || { cat found; fail "wanted four openings"; }
 }
 
+# quantities FILE: "TYPE SET ELEMENT QUANTITY VALUE" of each quantity of an IFC file
+quantities()
+{
+    awk '{ id = $0; sub(/=.*/, "", id); line = $0; sub(/^[^=]*=/, "", line); type = line; sub(/\(.*/, "", type); split(line, part, "\047"); of[id] = line; types[id] = type; names[id] = part[4] }
+        type ~ /^IFCQUANTITY/ { split(line, p, ","); q[id] = part[2] " " p[4] }
+        type == "IFCRELDEFINESBYPROPERTIES" { n++; split(line, p, /[()]/); element[n] = p[3]; set[n] = p[4]; gsub(/[,;]/, "", set[n]) }
+        END { for (i = 1; i <= n; i++) { list = of[set[i]]; sub(/^.*,\(/, "", list); gsub(/[();]/, "", list); m = split(list, v, ",")
+            for (k = 1; k <= m; k++) print types[element[i]], names[set[i]], names[element[i]], q[v[k]] } }' "$1"
+}
+# has_quantities TYPE SET ELEMENT QUANTITY VALUE ...: found has them, within a thousandth
+has_quantities()
+{
+    while [ $# -gt 0 ]; do
+        awk -v t="$1" -v s="$2" -v e="$3" -v q="$4" -v v="$5" '$1 == t && $2 == s && $3 == e && $4 == q { n++; d = $5 - v; ok = d * d <= 1e-6 * v * v } END { exit !(n == 1 && ok) }' found ||
+            { grep " $3 " found; fail "wanted $*"; }
+        shift 5
+    done
+}
+
+the_building_has_its_quantities()
+{
+    quantities "$E/model.ifc" >found
+    # a wall of 62 x 20 x 1 with corners; north has the door of 10 x 12, east the window of 10 x 7; the room is 60 x 60 x 20
+    local W='IFCWALL Qto_WallBaseQuantities' S='IFCSPACE Qto_SpaceBaseQuantities hall'
+    has_quantities $W south Length 62 $W south Height 20 $W south Width 1 $W south GrossSideArea 1240 $W south NetSideArea 1240
+    has_quantities $W north GrossSideArea 1240 $W north NetSideArea 1120 $W north NetVolume 1120 $W east NetSideArea 1170
+    has_quantities IFCDOOR Qto_DoorBaseQuantities gate Area 120 IFCWINDOW Qto_WindowBaseQuantities pane Width 10 \
+        IFCWINDOW Qto_WindowBaseQuantities pane Height 7 IFCWINDOW Qto_WindowBaseQuantities pane Area 70 IFCOPENINGELEMENT Qto_OpeningElementBaseQuantities pane Depth 1
+    has_quantities $S Height 20 $S GrossPerimeter 240 $S GrossFloorArea 3600 $S GrossWallArea 4800 $S GrossCeilingArea 3600 $S GrossVolume 72000
+    # the paint of north's inner face: 60 x 20 less the door
+    awk '$1 == "IFCCOVERING" && $3 == "wall/north/in" && $5 == "NetArea" { area += $6 } END { exit !((area - 1080) ^ 2 < 1) }' found ||
+        { grep 'wall/north/in' found; fail "wanted 1080 of paint on north"; }
+    quantities "$PWD/out/t/remodel/attic/export/model.ifc" >found
+    # below a gable of 10 above the eaves: two slopes of hypot(30, 10) x 60, and half of 60 x 60 x 10 more
+    has_quantities $S GrossVolume 90000 $S GrossCeilingArea 3794.733 $S Height 30
+    awk '$1 == "IFCWALL" && $4 == "NetVolume" { sum += $5 } END { exit !((sum - 5369.333) ^ 2 < 1) }' found || { grep NetVolume found; fail "wanted 5369.333 of walls"; }
+}
+
 assimp_reads_obj_and_gltf()
 {
     command -v assimp >/dev/null || skip "assimp is not installed (Debian: assimp-utils)"
@@ -207,4 +245,4 @@ things_of_an_edit_want_the_unedited_model()
 }
 
 for t in objects_of_an_edit_are_in_every_format things_are_in_every_format_as_the_edit_has_them \
-    things_of_an_edit_want_the_unedited_model the_gltf_validator_finds_no_error web_ifc_reads_the_building web_ifc_reads_a_gable assimp_reads_obj_and_gltf; do run "$t"; done
+    things_of_an_edit_want_the_unedited_model the_building_has_its_quantities the_gltf_validator_finds_no_error web_ifc_reads_the_building web_ifc_reads_a_gable assimp_reads_obj_and_gltf; do run "$t"; done
