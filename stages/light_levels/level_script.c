@@ -38,7 +38,7 @@ static void put_text(FILE *to, const char *text)
 
 /* ----------------------------------------------------------------------------------------------------------- points */
 
-static bool is_shown(const struct sensor_area *a) { return a->kind != SENSOR_FLOOR; }
+static bool is_shown(const struct sensor_area *a) { return a->kind == SENSOR_WORK_PLANE || a->kind == SENSOR_PLACE; }
 
 /* Keeps a point of a room by its row and column. */
 static bool is_kept(const struct writing *w, const struct sensor_area *a, int point)

@@ -224,7 +224,7 @@ enum status level_views_patches(double *patches, const struct level_light *light
     level_patches_sum(sums, light, w, err);
     for (int i = 0; !err->status && i < count; i++) {
         const float *direct = light->rows.direct + 3 * (size_t)g->count * (size_t)i;
-        for (int k = g->beam; w->sun > 0 && k < g->count; k++)
+        for (int k = g->beam; w->sun > 0 && k < g->beam + g->windows_count * g->patches.count; k++)
             sums[i][1] -= w->absolute[k] * (double)luminance_of(direct + 3 * (size_t)k);
         patches[i] = state->factors[0] * sums[i][0] + state->factors[1] * fmax(0, sums[i][1]);
     }

@@ -14,6 +14,7 @@
 #include "stages/light_levels/level_script.h"
 #include "stages/light_levels/level_sheet.h"
 #include "stages/light_levels/level_table.h"
+#include "stages/light_levels/place_marks.h"
 #include "stages/light_levels/quantities.h"
 
 void levels_release(struct levels_job *j)
@@ -110,9 +111,20 @@ static enum status write_others(struct levels_job *j, struct err *err)
     return write_script(j, err);
 }
 
+static enum status resolve_places(struct levels_job *j, struct err *err)
+{
+    const struct place_marks with = {.views = j->files.shown.views,
+                                     .axes = &j->scene.axes,
+                                     .plan = &j->plan,
+                                     .model = &level_scene_field(&j->scene)->model,
+                                     .work_plane = j->params.work_plane};
+    return place_marks_resolve(&j->places, &with, &j->prov, err);
+}
+
 enum status levels_run(struct levels_job *j, struct err *err)
 {
-    if (read_inputs(j, err) || level_light_make(&j->light, &j->scene, &j->params, err)) return err->status;
+    if (read_inputs(j, err) || resolve_places(j, err) || level_light_make(&j->light, &j->scene, &j->params, err))
+        return err->status;
     if (j->files.points) return j->files.table ? level_table_print_states(j, err) : level_table_print(j, err);
     if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, &j->scene.metre,
                      err) ||

@@ -9,10 +9,14 @@
 #include "common/base/textfile.h"
 
 static const double FARTHEST = 1000, HIGHEST = 100, SMALLEST = 0.01; /* m */
+static const double LARGEST = 1e6;                                   /* px */
 
 void place_list_release(struct place_list *l)
 {
-    for (int i = 0; i < l->count; i++) free(l->items[i].name);
+    for (int i = 0; i < l->count; i++) {
+        free(l->items[i].name);
+        free(l->items[i].photo);
+    }
     free(l->items);
     free(l->path);
     *l = (struct place_list){0};
@@ -48,6 +52,23 @@ static enum status read_option(struct light_place_mark *m, struct textfile *t, s
     return textfile_number(t, "a depth in metres", SMALLEST, FARTHEST, &m->size[1], err);
 }
 
+/* `at X Y` or `in PHOTO U V`. */
+static enum status read_where(struct light_place_mark *m, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, "at X Y or in PHOTO U V", &word, err)) return err->status;
+    if (!strcmp(word, "at")) {
+        if (textfile_number(t, "X in metres", -FARTHEST, FARTHEST, &m->at[0], err)) return err->status;
+        return textfile_number(t, "Y in metres", -FARTHEST, FARTHEST, &m->at[1], err);
+    }
+    if (strcmp(word, "in") != 0) return textfile_error(t, err, word, "at X Y or in PHOTO U V");
+    if (textfile_word(t, "a photo's id", &word, err)) return err->status;
+    m->photo = strdup(word);
+    if (!m->photo) return err_nomem(err, "a photo's id", strlen(word));
+    if (textfile_number(t, "U, a column of pixels", 0, LARGEST, &m->pixel[0], err)) return err->status;
+    return textfile_number(t, "V, a row of pixels", 0, LARGEST, &m->pixel[1], err);
+}
+
 static enum status read_place(struct place_list *l, struct textfile *t, struct err *err)
 {
     if (array_append(&l->items, (size_t)l->count, sizeof *l->items, "places", err)) return err->status;
@@ -55,9 +76,7 @@ static enum status read_place(struct place_list *l, struct textfile *t, struct e
     *m = (struct light_place_mark){.height = -1, .line = t->line};
     if (read_name(m, l, t, err)) return err->status;
     l->count++;
-    if (textfile_expect(t, "at", err) || textfile_number(t, "X in metres", -FARTHEST, FARTHEST, &m->at[0], err) ||
-        textfile_number(t, "Y in metres", -FARTHEST, FARTHEST, &m->at[1], err))
-        return err->status;
+    if (read_where(m, t, err)) return err->status;
     while (!err->status && textfile_more(t)) read_option(m, t, err);
     return err->status;
 }

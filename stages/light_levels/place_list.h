@@ -1,9 +1,9 @@
 /* place_list.h - scenes/NAME/places.txt: places of a room by name, at which light matters.
  *
  *   remodel-places 1
- *   place NAME at X Y [height H] [size W D [turn DEGREES]]
+ *   place NAME at X Y|in PHOTO U V [height H] [size W D [turn DEGREES]]
  *
- * Model frame, metres: X Y is the middle, H the height above the floor of the room (without it that of the work
+ * Model frame, metres: X Y is the middle, or the pixel U V of a photo shows it, at its height. H the height above the floor of the room (without it that of the work
  * plane), W and D the sides of a rectangle along x and y, turned counter-clockwise; without `size` a place is one
  * point. */
 #ifndef REMODEL_LEVELS_PLACE_LIST_H
@@ -12,7 +12,9 @@
 #include "common/base/provenance.h"
 
 struct light_place_mark {
-    char *name; /* owned */
+    char *name;  /* owned */
+    char *photo; /* that shows it (place_marks.h); owned; NULL: `at` was given */
+    double pixel[2];
     double at[2], size[2], turn;
     double height; /* below 0: that of the work plane */
     int line;

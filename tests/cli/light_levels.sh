@@ -152,6 +152,20 @@ a_day_is_a_film()
     levels 1 'the sun does not rise on 12-21' --states polar.txt --day 2026-12-21 --out made
 }
 
+places_are_marked_in_photographs()
+{
+    printf 'remodel-places 1\nplace spot in photo_1 64 92 height 0.01\n' >marks.txt
+    levels 0 patches --views $O/views --places marks.txt --out two/marks
+    [ -n "$(cell two/marks/sheet.tsv photographed place spot 5)" ] || { cat two/marks/sheet.tsv; fail "the mark has no light"; }
+    printf 'remodel-places 1\nplace spot in none-such 80 100\n' >marks.txt
+    levels 1 'marks.txt:2' --views $O/views --places marks.txt --out made
+    printf 'remodel-places 1\nplace spot in photo_1 64 9200\n' >marks.txt
+    levels 1 'marks.txt:2: pixel 80 10000 is not inside the photo photo_1' --views $O/views --places marks.txt --out made
+    printf 'remodel-places 1\nplace spot in photo_1 64 92 height 90\n' >marks.txt
+    levels 1 'marks.txt:2: pixel 64 92 of photo_1 shows no place' --views $O/views --places marks.txt --out made
+    levels 2 'need --views' --places marks.txt --out made
+}
+
 errors_name_file_and_line()
 {
     printf 'remodel-places 1\nplace desk at 0\n' >bad.txt
@@ -173,4 +187,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done

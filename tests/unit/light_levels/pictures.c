@@ -1,4 +1,5 @@
-/* Pictures and days of light levels: isolines of a cone, one range of colours, values between patches, hours of days. */
+/* Pictures, days and places of light levels: isolines of a cone, one range of colours, values between patches, hours of
+ * days, marks in photographs. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 #include "stages/light_levels/level_lines.h"
 #include "stages/light_levels/level_scale.h"
 #include "stages/light_levels/patch_values.h"
+#include "stages/light_levels/place_marks.h"
 #include "tests/unit/box_solids.h"
 
 static void assert_near(double found, double wanted, double tolerance)
@@ -186,6 +188,33 @@ static void dates_that_no_calendar_has_are_refused(void **state)
     assert_int_equal(date.day, 21);
 }
 
+/* ----------------------------------------------------------------------------------------------------------- places */
+
+/* Two rooms of 4 x 3 m side by side, of which the second is 1 m lower. */
+static void marks_are_where_their_ray_comes_to_their_height(void **state)
+{
+    (void)state;
+    struct model_room_corner corners[2][4] = {{{.x = 0, .y = 0}, {.x = 4, .y = 0}, {.x = 4, .y = 3}, {.x = 0, .y = 3}},
+                                              {{.x = 4, .y = 0}, {.x = 8, .y = 0}, {.x = 8, .y = 3}, {.x = 4, .y = 3}}};
+    struct model_room rooms[2] = {{.floor = 0, .corners = corners[0], .corner_count = 4},
+                                  {.floor = -1, .corners = corners[1], .corner_count = 4}};
+    const struct model_plan plan = {.rooms = rooms, .room_count = 2};
+    const struct vec3 from = {1, 1, 1.75};
+    struct vec3 at;
+    /* down by 1 m, over 2 m along x and 0.5 m along y */
+    assert_true(place_mark_find(&at, &plan, from, vec3_make(2, 0.5, -1), 0.75));
+    assert_near(at.x, 3, 1e-12);
+    assert_near(at.y, 1.5, 1e-12);
+    assert_near(at.z, 0.75, 1e-12);
+    /* twice as flat: past the first room, and 0.75 m above the lower floor only 2 m down */
+    assert_true(place_mark_find(&at, &plan, from, vec3_make(3, 0.1, -1), 0.75));
+    assert_near(at.x, 7, 1e-12);
+    assert_near(at.z, -0.25, 1e-12);
+    assert_false(place_mark_find(&at, &plan, from, vec3_make(1, 0, 1), 0.75));
+    assert_false(place_mark_find(&at, &plan, from, vec3_make(1, 0, 0), 0.75));
+    assert_false(place_mark_find(&at, &plan, from, vec3_make(0, 5, -1), 0.75));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -195,6 +224,7 @@ int main(void)
         cmocka_unit_test(values_between_patches_are_linear),
         cmocka_unit_test(days_have_the_hours_of_sunlight),
         cmocka_unit_test(dates_that_no_calendar_has_are_refused),
+        cmocka_unit_test(marks_are_where_their_ray_comes_to_their_height),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
