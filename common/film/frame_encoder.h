@@ -1,5 +1,5 @@
-/* frame_encoder.h - 8-bit frames to H.264 with ffmpeg: yuv420p, BT.709, faststart; reproducible with the same version of
- * ffmpeg.
+/* frame_encoder.h - 8-bit frames to H.264 with ffmpeg: yuv420p, BT.709, faststart; reproducible with the same version
+ * of ffmpeg.
  *
  *   struct frame_encoder e = {0};
  *   frame_encoder_begin(&e, "film.mp4", 640, 480, 25, &(struct frame_quality){"medium", 18}, err);

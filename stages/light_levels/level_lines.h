@@ -18,7 +18,8 @@ struct level_grid {
 typedef void level_line_fn(void *ctx, const double (*at)[2], int count);
 enum status level_lines_find(const struct level_grid *g, double level, level_line_fn *fn, void *ctx, struct err *err);
 
-/* A line at a level: cuts of squares, joined to paths as long as possible. Long paths bear the level's number. ST_NOMEM. */
+/* A line at a level: cuts of squares, joined to paths as long as possible. Long paths bear the level's number.
+ * ST_NOMEM. */
 enum status level_lines_put(FILE *to, const struct level_grid *g, double level, struct err *err);
 
 #endif

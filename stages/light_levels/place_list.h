@@ -3,9 +3,9 @@
  *   remodel-places 1
  *   place NAME at X Y|in PHOTO U V [height H] [size W D [turn DEGREES]]
  *
- * Model frame, metres: X Y is the middle, or the pixel U V of a photo shows it, at its height. H the height above the floor of the room (without it that of the work
- * plane), W and D the sides of a rectangle along x and y, turned counter-clockwise; without `size` a place is one
- * point. */
+ * Model frame, metres: X Y is the middle, or the pixel U V of a photo shows it, at its height. H is the height above
+ * the floor of the room (without it that of the work plane), W and D are the sides of a rectangle along x and y, turned
+ * counter-clockwise; without `size` a place is one point. */
 #ifndef REMODEL_LEVELS_PLACE_LIST_H
 #define REMODEL_LEVELS_PLACE_LIST_H
 

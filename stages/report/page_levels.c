@@ -1,7 +1,7 @@
 /* page_levels.c - see page_levels.h.
  *
- * The data of the room and of each edit, LUX/levels.js, go into the page, so that it opens from a file without a server.
- * Pictures stay files. Without scripts the page has links to all pictures and tables. */
+ * The data of the room and of each edit, LUX/levels.js, go into the page, so that it opens from a file without a
+ * server. Pictures stay files. Without scripts the page has links to all pictures and tables. */
 #include "stages/report/page_levels.h"
 
 #include <string.h>
@@ -45,7 +45,7 @@ static enum status put_data(struct page *page, const struct levels_sources *from
     return ST_OK;
 }
 
-/* ---------------------------------------------------------------------------------------------------------- controls */
+/* --------------------------------------------------------------------------------------------------------- controls */
 
 static void put_controls(FILE *to)
 {
@@ -81,7 +81,7 @@ static void put_controls(FILE *to)
           to);
 }
 
-/* ---------------------------------------------------------------------------------------------------------- pictures */
+/* --------------------------------------------------------------------------------------------------------- pictures */
 
 /* "STATE.PHOTO" at its first point: names of states have none. */
 static void put_link(FILE *to, const struct levels_variant *v, const char *picture)
@@ -128,7 +128,7 @@ static enum status put_pictures(struct page *page, const struct levels_sources *
     return err->status;
 }
 
-/* ------------------------------------------------------------------------------------------------------ films, files */
+/* ----------------------------------------------------------------------------------------------------- films, files */
 
 static enum status put_films(struct page *page, const struct levels_sources *from, const struct name_list *edits,
                              struct err *err)
