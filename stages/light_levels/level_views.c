@@ -120,7 +120,7 @@ static enum status read_photo(struct level_view *v, const struct photo_sight *s,
         const double weight = sum[4 * i + 3];
         for (int c = 0; c < 3; c++)
             v->photo[3 * i + c] =
-                weight > 0 ? (unsigned char)(255 * srgb_from_linear((float)(sum[4 * i + c] / weight)) + 0.5f) : 0;
+                weight > 0 ? (unsigned char)lroundf(255 * srgb_from_linear((float)(sum[4 * i + c] / weight))) : 0;
         if (!(weight > 0)) v->pixels[i].surface = NO_PHOTO;
     }
     free(sum);

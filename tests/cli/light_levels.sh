@@ -159,7 +159,7 @@ places_are_marked_in_photographs()
     [ -n "$(cell two/marks/sheet.tsv photographed place spot 5)" ] || { cat two/marks/sheet.tsv; fail "the mark has no light"; }
     printf 'remodel-places 1\nplace spot in none-such 80 100\n' >marks.txt
     levels 1 'marks.txt:2' --views $O/views --places marks.txt --out made
-    printf 'remodel-places 1\nplace spot in photo_1 64 9200\n' >marks.txt
+    printf 'remodel-places 1\nplace spot in photo_1 80 10000\n' >marks.txt
     levels 1 'marks.txt:2: pixel 80 10000 is not inside the photo photo_1' --views $O/views --places marks.txt --out made
     printf 'remodel-places 1\nplace spot in photo_1 64 92 height 90\n' >marks.txt
     levels 1 'marks.txt:2: pixel 64 92 of photo_1 shows no place' --views $O/views --places marks.txt --out made
