@@ -160,6 +160,15 @@ static enum status put_lamps(const struct writing *w, struct err *err)
         weights.relative[i] = 0;
         fputs("}", w->to);
     }
+    for (int i = 0; !err->status && i < g->count - g->planned; i++) {
+        fputs(",\n{\"planned\":true,\"name\":", w->to);
+        put_text(w->to, g->planned_lamps->list[i].name);
+        fputs(",\"light\":", w->to);
+        weights.absolute[g->planned + i] = 1;
+        put_weighted(w, &weights, 1, err);
+        weights.absolute[g->planned + i] = 0;
+        fputs("}", w->to);
+    }
     if (!err->status) fputs("],\n", w->to);
     level_weights_release(&weights);
     return err->status;

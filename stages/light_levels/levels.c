@@ -117,7 +117,7 @@ static enum status resolve_places(struct levels_job *j, struct err *err)
                                      .axes = &j->scene.axes,
                                      .plan = &j->plan,
                                      .model = &level_scene_field(&j->scene)->model,
-                                     .work_plane = j->params.work_plane};
+                                     .work_plane = j->params.work_plane * j->scene.metre.units};
     return place_marks_resolve(&j->places, &with, &j->prov, err);
 }
 

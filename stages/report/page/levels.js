@@ -36,7 +36,7 @@ const decode = ({low, high, data}) => {
 class Variant {
     constructor(data, name) {
         Object.assign(this, data, {name, count: data.points.length / 2});
-        this.lamps = data.lamps.map((l) => ({name: l.name, light: decode(l.light)}));
+        this.lamps = data.lamps.map((l) => ({name: l.name, planned: !!l.planned, light: decode(l.light)}));
         this.photographed = decode(data.photographed);
         this.overcast = decode(data.overcast);
         this.days = data.days.map((d) => ({...d, light: decode(d.light)}));
@@ -49,15 +49,16 @@ class Variant {
     // The unit of a choice of light: lx if a scale is known, or if only computed skies shine.
     unit(choice) { return this.scale > 0 || choice.isAbsolute() ? 'lx' : 'relative'; }
 
-    // Illuminance at each point. Without a scale, lamps cannot be added to computed skies.
+    // Illuminance at each point. Without a scale, light of the photographs cannot be added to what is in lx.
     values(choice) {
         const to = new Float64Array(this.count), factor = this.scale > 0 ? this.scale : 1;
         const add = (light, by, from = 0) => {
             for (let i = 0; by && i < this.count; i++) to[i] += by * light[from + i];
         };
-        if (this.scale > 0 || !choice.isAbsolute())
-            for (const lamp of this.lamps) add(lamp.light, factor * choice.lamp(lamp.name));
-        if (choice.sky === 'photographed') add(this.photographed, factor);
+        const photos = this.scale > 0 || !choice.isAbsolute();
+        for (const lamp of this.lamps)
+            if (photos || lamp.planned) add(lamp.light, (lamp.planned ? 1 : factor) * choice.lamp(lamp.name));
+        if (choice.sky === 'photographed' && photos) add(this.photographed, factor);
         if (choice.sky === 'overcast') add(this.overcast, 1);
         const day = this.days[choice.day];
         if (choice.sky === 'hour' && day)
@@ -261,10 +262,12 @@ class Plan {
 
 class Choice {
     constructor() {
-        Object.assign(this, {sky: 'photographed', day: 0, hour: 0, cover: 0, edit: 0, show: 'after', factors: new Map()});
+        Object.assign(this, {sky: 'photographed', day: 0, hour: 0, cover: 0, edit: 0, show: 'after', factors: new Map(),
+            planned: []});
     }
     lamp(name) { return this.factors.has(name) ? this.factors.get(name) : 1; }
-    isAbsolute() { return this.sky === 'overcast' || this.sky === 'hour'; }
+    // Whether something shines that is in lx: a computed sky, or a planned lamp.
+    isAbsolute() { return this.sky === 'overcast' || this.sky === 'hour' || this.planned.some((n) => this.lamp(n) > 0); }
 }
 
 const clock = (hour) => `${Math.floor(hour)}:${String(Math.round(60 * (hour % 1))).padStart(2, '0')}`;
@@ -356,20 +359,25 @@ class Page {
 
     // All lamps, each lamp of any variant, and the light of the photographs that nothing explains.
     addLamps() {
-        const names = [...new Set(this.variants.flatMap((v) => v.lamps.map((l) => l.name)))];
+        const lamps = this.variants.flatMap((v) => v.lamps), names = [...new Set(lamps.map((l) => l.name))];
         const box = byId('lamps'), c = this.choice;
+        c.planned = names.filter((n) => lamps.some((l) => l.name === n && l.planned));
         this.dimmers = names.map((name, i) => {
-            const output = make('output', {for: `lamp${i}`}, '100 %');
-            const input = make('input', {type: 'range', min: 0, max: 200, step: 5, value: 100, id: `lamp${i}`});
+            const planned = c.planned.includes(name), value = planned ? 0 : 100;
+            const output = make('output', {for: `lamp${i}`}, `${value} %`);
+            const input = make('input', {type: 'range', min: 0, max: 200, step: 5, value, id: `lamp${i}`});
             input.addEventListener('input', () => { this.dim(i, Number(input.value)); this.update(); });
-            box.append(make('label', {for: `lamp${i}`}, name ? words(name) : 'light that no lamp or window explains',
-                output), input);
-            return {name, input, output};
+            box.append(make('label', {for: `lamp${i}`}, name ? `${words(name)}${planned ? ', planned' : ''}` :
+                'light that no lamp or window explains', output), input);
+            return {name, planned, input, output};
         });
-        const all = (value) => () => { names.forEach((n, i) => this.dim(i, value)); this.update(); };
+        const all = (value) => () => {
+            this.dimmers.forEach((d, i) => { if (!value || !d.planned) this.dim(i, value); });
+            this.update();
+        };
         byId('on').addEventListener('click', all(100));
         byId('off').addEventListener('click', all(0));
-        names.forEach((name) => c.factors.set(name, 1));
+        names.forEach((name) => c.factors.set(name, c.planned.includes(name) ? 0 : 1));
     }
 
     dim(i, percent) {
@@ -429,8 +437,8 @@ class Page {
     update() {
         const c = this.choice, show = this.shownValues(), base = this.variants[0];
         const useless = c.isAbsolute() && !(base.scale > 0), isHour = c.sky === 'hour';
-        for (const d of this.dimmers) d.input.disabled = useless;
-        byId('on').disabled = byId('off').disabled = useless;
+        for (const d of this.dimmers) d.input.disabled = useless && !d.planned;
+        byId('on').disabled = useless;
         byId('no-scale').hidden = !useless;
         byId('hours').hidden = !isHour;
         byId('compare').hidden = !c.edit;
@@ -472,8 +480,7 @@ class Page {
         const tableRows = rows.map((r) => {
             const cells = [shown(r.mean), shown(r.least), shown(r.most), r.uniformity.toFixed(2)];
             const before = was.find((o) => o.kind === r.kind && o.name === r.name);
-            if (c.sky === 'overcast') cells.push(c.factors.size && base.scale > 0 && this.lampsShine() ? '–' :
-                `${(100 * r.mean / base.overcastLux).toFixed(2)} %`);
+            if (c.sky === 'overcast') cells.push(this.lampsShine() ? '–' : `${(100 * r.mean / base.overcastLux).toFixed(2)} %`);
             if (c.edit) cells.push(before ? shown(before.mean) : '–', before ? signed(r.mean - before.mean) : '–');
             return make('tr', {}, make('th', {scope: 'row'}, name(r)), ...cells.map((t) => make('td', {}, t)));
         });
@@ -487,7 +494,11 @@ class Page {
         this.plan.canvas.setAttribute('aria-label', `Plan of the rooms. ${summary}. Arrow keys read single points.`);
     }
 
-    lampsShine() { return [...this.choice.factors.values()].some((f) => f > 0); }
+    // Whether a lamp adds to the sky of daylight factors.
+    lampsShine() {
+        const counts = this.variants[0].scale > 0;
+        return this.dimmers.some((d) => (counts || d.planned) && this.choice.lamp(d.name) > 0);
+    }
 }
 
 const rampColour = (ramp, place) => {
