@@ -137,7 +137,8 @@ static enum status write_lights(struct job *j, const struct solved_lights *s, co
 {
     char path[FILE_PATH];
     if (product_path_in(path, j->out, PRODUCT_MARK_CANDIDATES, NULL, err) ||
-        mark_candidates_write(&j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, path, &j->prov, err) ||
+        mark_candidates_write(&j->scene, &j->notes, &j->model, &j->furnished, j->views, j->ids, &j->params, path,
+                              &j->prov, err) ||
         product_path_in(path, j->out, PRODUCT_LIGHT_FIT, NULL, err) ||
         solve_write(s, in, &j->unseen, &j->model, path, &j->prov, err) ||
         lamp_pictures_write(&j->scene, &j->model, j->views, j->out, err))
@@ -190,7 +191,7 @@ static enum status fit(struct job *j, struct err *err)
     struct solved_lights solved = {0};
     find_indirect(j, err);
     if (!err->status && j->lamps)
-        observe(&seen, &j->scene, &j->notes, &j->model, j->views, j->ids, &j->params, &j->prov, err);
+        observe(&seen, &j->scene, &j->notes, &j->model, &j->furnished, j->views, j->ids, &j->params, &j->prov, err);
     if (!err->status) direct_light_make(&direct, &j->scene, &j->furnished, err);
     const struct solve_inputs in = {&j->scene,      &j->notes,  &seen, &direct, (const double(*)[3])j->indirect.at,
                                     &j->model.rays, &j->params, false};

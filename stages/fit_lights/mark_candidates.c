@@ -388,15 +388,15 @@ static enum status print_all(struct finder *f, const char *path, const struct pr
 }
 
 enum status mark_candidates_write(const struct lit_scene *scene, const struct annotation_list *notes,
-                                  const struct lit_model *model, const char *views, const char *ids,
-                                  const struct fit_lights_params *params, const char *path, struct provenance *prov,
-                                  struct err *err)
+                                  const struct lit_model *model, const struct model_rays *furnished, const char *views,
+                                  const char *ids, const struct fit_lights_params *params, const char *path,
+                                  struct provenance *prov, struct err *err)
 {
     struct finder f = {.scene = scene, .notes = notes, .model = model};
     if (!find_places(&f, err)) {
         if (!f.lamp_count)
             unlink(path); /* of an earlier run */
-        else if (!observe(&f.seen, &f.probe, notes, model, views, ids, params, prov, err))
+        else if (!observe(&f.seen, &f.probe, notes, model, furnished, views, ids, params, prov, err))
             print_all(&f, path, prov, err);
     }
     observe_release(&f.seen);

@@ -2,7 +2,11 @@
  *
  * A point's radiance in a view is the mean over a small square of pixels about its place; that of a line's point is
  * bilinear, so that the edge of a cone stays sharp. Of several views of one photo the one counts in which the point is
- * nearest the centre: they are the same light on the same sensor. */
+ * nearest the centre: they are the same light on the same sensor.
+ *
+ * Furniture hides points as walls do. The clutter of a view's pixels alone does not tell of all of it: a wardrobe that
+ * fills a corner looks like its wall. Where a person marked a point, the picture there shows it, whatever furniture is
+ * taken to be. */
 #include "stages/fit_lights/observe_lights.h"
 
 #include <math.h>
@@ -34,6 +38,7 @@ struct viewer {
     const struct lit_scene *scene;
     const struct annotation_list *notes;
     const struct lit_model *model;
+    const struct model_rays *furnished;
     const struct fit_lights_params *params;
     int index, photo;
     struct view camera; /* model frame */
@@ -51,10 +56,10 @@ static bool project(const struct viewer *v, struct vec3 at, struct vec3 normal, 
     return *x >= 1 && *y >= 1 && *x <= v->camera.width - 1 && *y <= v->camera.height - 1;
 }
 
-static bool hidden_by_model(const struct viewer *v, struct vec3 at, struct vec3 normal)
+static bool is_hidden(const struct viewer *v, const struct model_rays *by, struct vec3 at, struct vec3 normal)
 {
-    const struct vec3 from = vec3_add(at, vec3_scale(normal, 4 * v->model->rays.rays.epsilon));
-    return ray_scene_blocked(&v->model->rays.rays, from, vec3_sub(v->camera.center, from), 1);
+    const struct vec3 from = vec3_add(at, vec3_scale(normal, 4 * by->rays.epsilon));
+    return ray_scene_blocked(&by->rays, from, vec3_sub(v->camera.center, from), 1);
 }
 
 static int pixel_at(const struct viewer *v, int x, int y)
@@ -115,9 +120,11 @@ static enum status observe_point(struct viewer *v, int point, struct err *err)
     struct observation o = {.point = point, .photo = v->photo};
     double x, y;
     bool clipped = false;
-    if (!project(v, p->at, p->normal, &x, &y) || hidden_by_model(v, p->at, p->normal)) return ST_OK;
+    if (!project(v, p->at, p->normal, &x, &y) || is_hidden(v, &v->model->rays, p->at, p->normal)) return ST_OK;
     const float clutter = v->ids.clutter[pixel_at(v, (int)floor(x), (int)floor(y))];
-    if (!marked_here(v, p) && clutter >= (float)v->params->max_clutter) return ST_OK;
+    if (!marked_here(v, p) &&
+        (clutter >= (float)v->params->max_clutter || is_hidden(v, v->furnished, p->at, p->normal)))
+        return ST_OK;
     if (!(p->kind == NOTE_LINE ? bilinear(v, x, y, &o, &clipped) : mean_square(v, x, y, &o, &clipped))) {
         v->o->clipped += clipped;
         v->o->clipped_points[point] += clipped;
@@ -141,7 +148,7 @@ static enum status observe_lamp(struct viewer *v, int lamp, struct err *err)
         const struct vec3 at = vec3_add(l->centre, vec3_add(vec3_scale(l->x, a), vec3_scale(l->y, b)));
         double x, y;
         if (l->shape == LAMP_DISK && a * a + b * b > 0.7) continue;
-        if (!project(v, at, l->normal, &x, &y) || hidden_by_model(v, at, l->normal)) continue;
+        if (!project(v, at, l->normal, &x, &y) || is_hidden(v, &v->model->rays, at, l->normal)) continue;
         const int pixel = pixel_at(v, (int)floor(x), (int)floor(y));
         if (!(v->picture.channel[VIEW_A][pixel] > 0.999f)) continue;
         pixels += pixel != last;
@@ -204,10 +211,11 @@ static int compare(const void *a, const void *b)
 }
 
 enum status observe(struct observations *o, const struct lit_scene *scene, const struct annotation_list *notes,
-                    const struct lit_model *model, const char *views, const char *ids,
-                    const struct fit_lights_params *params, struct provenance *prov, struct err *err)
+                    const struct lit_model *model, const struct model_rays *furnished, const char *views,
+                    const char *ids, const struct fit_lights_params *params, struct provenance *prov, struct err *err)
 {
-    struct viewer v = {.o = o, .scene = scene, .notes = notes, .model = model, .params = params};
+    struct viewer v = {
+        .o = o, .scene = scene, .notes = notes, .model = model, .furnished = furnished, .params = params};
     *o = (struct observations){.clipped_points = calloc((size_t)scene->point_count + 1, sizeof(int))};
     if (!o->clipped_points) err_nomem(err, "points", (size_t)scene->point_count);
     for (int i = 0; !err->status && i < model->in.set.view_count; i++) {

@@ -29,10 +29,11 @@ struct observations {
 };
 
 /* Reads VIEWS/VIEW.exr and IDS/VIEW.exr of the views that face a point or a lamp, and adds them to the provenance. The
- * view in which a point is marked counts as showing it; in others the model and the clutter decide. */
+ * view in which a point is marked counts as showing it; in others the model, `furnished` (the model with its furniture)
+ * and the clutter decide. */
 enum status observe(struct observations *o, const struct lit_scene *scene, const struct annotation_list *notes,
-                    const struct lit_model *model, const char *views, const char *ids,
-                    const struct fit_lights_params *params, struct provenance *prov, struct err *err);
+                    const struct lit_model *model, const struct model_rays *furnished, const char *views,
+                    const char *ids, const struct fit_lights_params *params, struct provenance *prov, struct err *err);
 void observe_release(struct observations *o);
 
 #endif

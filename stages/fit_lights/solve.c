@@ -57,29 +57,59 @@ static const struct annotation *note_of_lamp(const struct solve_inputs *in, int 
 
 /* ------------------------------------------------------------------------------------------- lamps seen themselves */
 
+static bool is_of(const struct lamp_sight *s, const struct lamp *l, int lamp)
+{
+    return s->lamp == lamp && s->angle < l->beta;
+}
+
+static double towards_normal(const struct lamp_sight *s, const struct lamp *l, int colour)
+{
+    return s->radiance[colour] / fmax(pow(cos(s->angle), l->exponent), 1e-3);
+}
+
+/* Whether most views of the lamp are saturated. Then one that shows less than half of what the brightest of them shows at
+ * least does not show the lamp: something hides it there. */
+static bool is_bright(const struct solve_inputs *in, int lamp)
+{
+    const struct observations *o = in->seen;
+    int saturated = 0, all = 0;
+    for (int i = 0; i < o->sight_count; i++) {
+        if (!is_of(&o->sights[i], &in->scene->lights.lamps[lamp], lamp)) continue;
+        saturated += o->sights[i].saturated;
+        all++;
+    }
+    return 2 * saturated > all;
+}
+
+static bool is_hidden_in(const struct lamp_sight *s, const struct lamp *l, const double bound[3])
+{
+    bool hidden = !s->saturated;
+    for (int c = 0; c < 3; c++) hidden &= 2 * towards_normal(s, l, c) < bound[c];
+    return hidden;
+}
+
 static void measure_lamp(struct lamp_result *r, const struct solve_inputs *in, int lamp)
 {
     const struct lamp *l = &in->scene->lights.lamps[lamp];
     const struct observations *o = in->seen;
     struct weighted *values = calloc((size_t)o->sight_count + 1, sizeof *values);
+    double bound[3] = {0};
     if (!values) return; /* a check less */
     r->saturated = r->unsaturated = 0;
-    for (int i = 0; i < o->sight_count; i++)
-        if (o->sights[i].lamp == lamp && o->sights[i].angle < l->beta) r->saturated += o->sights[i].saturated;
+    for (int i = 0; i < o->sight_count; i++) {
+        if (!is_of(&o->sights[i], l, lamp) || !o->sights[i].saturated) continue;
+        for (int c = 0; c < 3; c++) bound[c] = fmax(bound[c], o->sights[i].radiance[c]);
+        r->saturated++;
+    }
     for (int c = 0; c < 3; c++) {
         size_t n = 0;
-        double most = 0;
         for (int i = 0; i < o->sight_count; i++) {
             const struct lamp_sight *s = &o->sights[i];
-            if (s->lamp != lamp || s->angle >= l->beta) continue;
-            const double towards_normal = s->radiance[c] / fmax(pow(cos(s->angle), l->exponent), 1e-3);
-            if (s->saturated)
-                most = fmax(most, s->radiance[c]);
-            else
-                values[n++] = (struct weighted){towards_normal, 1};
+            if (!is_of(s, l, lamp) || s->saturated || (is_bright(in, lamp) && is_hidden_in(s, l, bound))) continue;
+            values[n++] = (struct weighted){towards_normal(s, l, c), 1};
         }
         r->unsaturated = (int)n;
-        r->seen[c] = n ? weighted_percentile(values, n, 0.5) : most;
+        r->seen[c] = n ? weighted_percentile(values, n, 0.5) : bound[c];
         for (size_t i = 0; i < n; i++) values[i].value = fabs(values[i].value - r->seen[c]);
         r->seen_error[c] = n ? weighted_percentile(values, n, 0.5) / 0.6745 / sqrt((double)n) : 0;
     }

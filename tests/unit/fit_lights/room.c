@@ -168,7 +168,8 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
     if (!annotation_list_read(&room.notes, scratch_write("lights.txt", text), NULL, err))
         lit_scene_resolve(&room.scene, &room.notes, &room.model, 5, places, err);
     if (!err->status)
-        observe(&room.seen, &room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params, &prov, err);
+        observe(&room.seen, &room.scene, &room.notes, &room.model, &room.model.rays, scratch, scratch_path("ids"),
+                &params, &prov, err);
     if (!err->status) direct_light_make(&room.direct_light, &room.scene, &room.model.rays, err);
     room.indirect = calloc((size_t)room.scene.point_count + 1, sizeof *room.indirect);
     for (int i = 0; i < room.scene.point_count; i++)
