@@ -42,7 +42,9 @@ static void photo_rule(struct graph *g, const struct scene_facts *f, const struc
 RULES(bake_vdta)
 {
     graph_step(g, "vdta", STEP_FARM, "ids things fill");
+    graph_step(g, "relit-vdta", STEP_FARM, "ids things fill"); /* of the photos that are relit: relight lists them */
     graph_goal(g, "vdta", NULL);
+    graph_goal(g, "relit-vdta", NULL);
     if (!f->has_model || !f->views.count) return;
     for (int i = 0; i < f->viewpoints.count; i++) photo_rule(g, f, &f->viewpoints.photos[i]);
     if (!scene_asks_for_any(f, "textures remodel")) return;

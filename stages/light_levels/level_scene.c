@@ -145,14 +145,14 @@ static enum status colour_edit(struct level_light *l, const struct level_scene *
     return err->status;
 }
 
-enum status level_light_make(struct level_light *l, const struct level_scene *s, const struct levels_params *params,
-                             struct err *err)
+enum status level_light_make(struct level_light *l, const struct level_scene *s, bool hours,
+                             const struct levels_params *params, struct err *err)
 {
     const struct model_field *field = level_scene_field(s);
     patch_owner_fn *owner = s->edited ? new_owner : old_owner;
     const void *ctx = s->edited ? (const void *)&s->change : &s->furniture;
     *l = (struct level_light){.bounded = 0};
-    if (groups_make(&l->groups, field, true, err)) return err->status;
+    if (groups_make(&l->groups, field, hours, err)) return err->status;
     if (s->planned) groups_add_planned(&l->groups, s->planned, s->metre.units);
     if (check_planned(s, field, err) || patches_make(&l->patches, field, params->patches, owner, ctx, err) ||
         trace_patches(&l->rows, &l->groups, &l->patches, params, "light of patches", err))

@@ -40,10 +40,10 @@ struct level_light {
     int bounded; /* patches of faces whose reflectance is that of their face */
 };
 
-/* The caller releases l in each case. Same bits for any number of threads. ST_DATA: a planned lamp inside of a wall or
- * outdoors. */
-enum status level_light_make(struct level_light *l, const struct level_scene *s, const struct levels_params *params,
-                             struct err *err);
+/* hours: with groups for the sky and the sun of any hour, which a photographed state does not need. The caller releases
+ * l in each case. Same bits for any number of threads. ST_DATA: a planned lamp inside of a wall or outdoors. */
+enum status level_light_make(struct level_light *l, const struct level_scene *s, bool hours,
+                             const struct levels_params *params, struct err *err);
 void level_light_release(struct level_light *l);
 
 /* The irradiance at points from each group: (*found)[(point * groups + group) * 3 + channel]; what arrives directly

@@ -18,8 +18,6 @@
 #include "stages/light_levels/level_plan.h"
 #include "stages/light_levels/level_year.h"
 
-static const double NORMAL_95 = 1.959964; /* standard deviations to either side */
-
 /* How a state's two sums become values. */
 struct reading {
     const char *name, *unit;
@@ -37,16 +35,16 @@ static bool begin_reading(struct reading *r, const struct levels_job *j, const s
     *r = (struct reading){
         state->name, scaled || !w->has_relative ? "lx" : "relative", {scaled ? scale->scale : 1, 1}, 0, 0};
     for (int k = 0; scaled && w->has_relative && k < 2; k++) {
-        const double d = log(k ? scale->high / scale->scale : scale->scale / scale->low) / NORMAL_95;
+        const double d = log(k ? scale->high / scale->scale : scale->scale / scale->low) / LEVEL_NORMAL_95;
         variance[k] += d * d;
     }
     const struct level_metre *metre = &j->scene.metre;
     for (int k = 0; metre->guessed && w->has_planned && k < 2; k++) {
-        const double d = 2 * log(k ? metre->high / metre->units : metre->units / metre->low) / NORMAL_95;
+        const double d = 2 * log(k ? metre->high / metre->units : metre->units / metre->low) / LEVEL_NORMAL_95;
         variance[k] += d * d;
     }
-    r->low = exp(-NORMAL_95 * sqrt(variance[0]));
-    r->high = exp(NORMAL_95 * sqrt(variance[1]));
+    r->low = exp(-LEVEL_NORMAL_95 * sqrt(variance[0]));
+    r->high = exp(LEVEL_NORMAL_95 * sqrt(variance[1]));
     return true;
 }
 

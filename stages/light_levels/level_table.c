@@ -1,11 +1,13 @@
 /* level_table.c - see level_table.h. */
 #include "stages/light_levels/level_table.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "common/base/scan.h"
 #include "common/light/surface_points.h"
+#include "stages/light_levels/level_sheet.h"
 
 /* {0} is the empty state; everything is owned. */
 struct given_points {
@@ -42,6 +44,7 @@ static void put_point(const struct surface_point *p)
 enum status level_table_print(struct levels_job *j, struct err *err)
 {
     const struct light_groups *g = &j->light.groups;
+    const double high = exp(LEVEL_NORMAL_95 * j->params.error);
     struct given_points given = {.points = NULL};
     struct light_rows direct = {0};
     float *found = NULL;
@@ -52,7 +55,7 @@ enum status level_table_print(struct levels_job *j, struct err *err)
         for (int k = 0; k < 3 * g->patch; k++)
             sum[k % 3] += (double)found[3 * (size_t)g->count * (size_t)i + (size_t)k];
         put_point(&given.list.list[i]);
-        printf(" %.9g %.9g %.9g\n", sum[0], sum[1], sum[2]);
+        printf(" %.9g %.9g %.9g %.4g %.4g\n", sum[0], sum[1], sum[2], 1 / high, high);
     }
     free(found);
     rows_release(&direct);

@@ -123,7 +123,8 @@ static enum status resolve_places(struct levels_job *j, struct err *err)
 
 enum status levels_run(struct levels_job *j, struct err *err)
 {
-    if (read_inputs(j, err) || resolve_places(j, err) || level_light_make(&j->light, &j->scene, &j->params, err))
+    const bool hours = !j->files.points || j->files.table;
+    if (read_inputs(j, err) || resolve_places(j, err) || level_light_make(&j->light, &j->scene, hours, &j->params, err))
         return err->status;
     if (j->files.points) return j->files.table ? level_table_print_states(j, err) : level_table_print(j, err);
     if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, &j->scene.metre,

@@ -52,7 +52,8 @@ int main(int argc, char **argv)
                 "cd/m2 of a radiance of 1, scale.txt; without it, light of the photographs is in their own unit"),
         CLI_STR("before", &job.files.before, CLI_OPTIONAL, "sheet.tsv of the unedited room, to compare with"),
         CLI_STR("points", &job.files.points, CLI_OPTIONAL,
-                "instead: print the photographed irradiance at points, X Y Z NX NY NZ a line, in the views' frame"),
+                "instead: print the photographed irradiance at points, X Y Z NX NY NZ a line, in the views' frame, and "
+                "the ends of its interval of 95 % as factors"),
         CLI_FLAG("table", &job.files.table, "with --points: print their illuminance in each state instead"),
         CLI_STR("views", &job.files.shown.views, CLI_OPTIONAL, "folder of cameras and views, for pictures"),
         CLI_LIST("photo", &job.files.shown.names, CLI_OPTIONAL,

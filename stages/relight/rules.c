@@ -103,6 +103,7 @@ static void picture_rules(struct graph *g, const struct scene_facts *f, const ch
         if (!views) err_nomem(graph_err(g), "views", (size_t)all->count * sizeof *views);
         for (int k = 0; views && k < all->count; k++)
             if (is_wanted(wanted, all->photo, all->views[k])) views[p.count++] = all->views[k];
+        if (p.count) graph_goal(g, "relit-vdta", PATH(g, ATLAS, .atlas = graph_text(g, "vdta/%s", p.photo)));
         if (p.count) unlit_rule(g, edit, &p);
         if (p.count) relit_rule(g, f, edit, &p);
         free(views);
@@ -176,7 +177,9 @@ RULES(relight)
     static const char *const goals[] = {"unlit", "relight", "relit-tour", "relit-tour-unlit", "relit-tour-frames"};
     struct name_list wanted = {0};
     graph_step(g, "unlit", STEP_FARM, "");
-    graph_step(g, "relight", STEP_FARM, "textures outdoors exposure things relit-vita unlit");
+    graph_step(g, "relight", STEP_FARM,
+               *scene_setting("CAMERAS") ? "textures outdoors exposure things relit-vita unlit"
+                                         : "relit-vdta vita outdoors exposure things relit-vita unlit");
     graph_step(g, "relit-tour-unlit", STEP_FARM, "textures outdoors exposure tour-path things");
     graph_step(g, "relit-tour-frames", STEP_FARM, "relit-vita relit-tour-unlit");
     graph_step(g, "relit-tour", STEP_ONE, "relit-tour-frames");

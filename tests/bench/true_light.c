@@ -181,9 +181,10 @@ static struct lamp lamp_to_model(const struct job *j, const struct lamp *truth)
 
 static void compare_lamp(const struct lamp *found, const struct lamp *truth)
 {
-    printf("lamp %s radiance %.4f beta %.3f centre %.4f%s\n", found->name,
+    printf("lamp %s radiance %.4f beta %.3f centre %.4f true %.6g %.6g %.6g%s\n", found->name,
            rgb_luminance(found->radiance) / rgb_luminance(truth->radiance) - 1, (found->beta - truth->beta) / DEGREE,
-           vec3_length(vec3_sub(found->centre, truth->centre)), found->bound ? " bound" : "");
+           vec3_length(vec3_sub(found->centre, truth->centre)), truth->radiance.r, truth->radiance.g, truth->radiance.b,
+           found->bound ? " bound" : "");
 }
 
 /* A disk's half axes are made when the list is written and read again. */
