@@ -1,16 +1,23 @@
-/* thing_views.c - things in the pictures of the views; see thing_views.h. */
+/* thing_views.c - things in the pictures of the views; see thing_views.h.
+ *
+ * The radiance of sides. Light is gathered from a thing whose surface with the normal n has the radiance
+ * sum_k n_k^2 s_k, blended of three of its six sides [McTaggart 2004]. So the sides s are those with which this
+ * blend is nearest to the pixels' radiance, by least squares. Means weighted by n_k^2 would be blended twice: a
+ * table's bright top would make its sides bright, since normals of voxels lean. MIN_SIDE pixels of the mean radiance
+ * are added to each side. */
 #include "stages/find_things/thing_views.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/math/cholesky.h"
 #include "common/math/distance.h"
 #include "stages/find_things/fuse_views.h"
 
 enum { SIDE_STEP = 3 }; /* one in so many pixels tells of a side */
 
-#define MIN_SIDE      10.0   /* such pixels that tell of a side, at least */
+#define MIN_SIDE      10.0   /* such pixels count as much as the mean */
 #define MIN_SHARE     0.0005 /* of the picture: a view with less of a thing does not count as one that shows it */
 #define WHOLE         0.5    /* share of a segment's pixels that make all of it show the thing */
 #define HALF_DIAGONAL 0.87   /* of a voxel */
@@ -148,7 +155,8 @@ static void add_sides(struct thing_sight *s, struct vec3 normal, const float *rg
     const double n[3] = {normal.x, normal.y, normal.z};
     for (int k = 0; k < 3; k++) {
         const int side = 2 * k + (n[k] < 0);
-        s->side_weight[side] += n[k] * n[k];
+        for (int j = 0; j < 3; j++)
+            s->side_weights[side * THING_SIDES + 2 * j + (n[j] < 0)] += n[k] * n[k] * n[j] * n[j];
         for (int c = 0; c < 3; c++) s->side_sum[side][c] += n[k] * n[k] * (double)rgb[c];
     }
 }
@@ -168,11 +176,18 @@ void thing_sights_add_radiance(struct thing_sight *sights, const uint32_t *mask,
 
 void thing_sight_radiance(struct thing *t, const struct thing_sight *s)
 {
-    for (int c = 0; c < 3; c++) t->radiance[c] = s->pixels ? fmax(0, s->sum[c] / (double)s->pixels) : 0;
-    for (int k = 0; k < THING_SIDES; k++)
-        for (int c = 0; c < 3; c++)
-            t->sides[k][c] =
-                s->side_weight[k] >= MIN_SIDE ? fmax(0, s->side_sum[k][c] / s->side_weight[k]) : t->radiance[c];
+    double factor[THING_SIDES * THING_SIDES];
+    memcpy(factor, s->side_weights, sizeof factor);
+    for (int k = 0; k < THING_SIDES; k++) factor[k * THING_SIDES + k] += MIN_SIDE;
+    const bool known = cholesky_factor(factor, THING_SIDES); /* always, but for overflow */
+    for (int c = 0; c < 3; c++) {
+        double sides[THING_SIDES];
+        t->radiance[c] = s->pixels ? fmax(0, s->sum[c] / (double)s->pixels) : 0;
+        for (int k = 0; k < THING_SIDES; k++) sides[k] = s->side_sum[k][c] + MIN_SIDE * t->radiance[c];
+        cholesky_forward(factor, THING_SIDES, sides);
+        cholesky_backward(factor, THING_SIDES, sides);
+        for (int k = 0; k < THING_SIDES; k++) t->sides[k][c] = known ? fmax(0, sides[k]) : t->radiance[c];
+    }
 }
 
 enum status thing_sights_add(struct thing_sight *sights, int count, const uint32_t *mask, const struct view *view,

@@ -30,14 +30,14 @@ void thing_meets_find(uint32_t *meets, const struct surface_voxel *voxels, size_
 
 /* What the views show of a thing. {0} is the state before the first view. */
 struct thing_sight {
-    int views;      /* that show enough of it */
-    int best;       /* index of the view that shows it best */
-    double score;   /* of that view */
-    double sum[3];  /* of the radiance of its pixels */
-    int64_t pixels; /* whose radiance is in the sum */
-    double side_sum[THING_SIDES][3],
-        side_weight[THING_SIDES]; /* the same of each side, weighted by how a pixel faces */
-    int low[2], high[2];          /* px: its rectangle there */
+    int views;                                      /* that show enough of it */
+    int best;                                       /* index of the view that shows it best */
+    double score;                                   /* of that view */
+    double sum[3];                                  /* of the radiance of its pixels */
+    int64_t pixels;                                 /* whose radiance is in the sum */
+    double side_sum[THING_SIDES][3];                /* the same of each side, weighted by how a pixel faces */
+    double side_weights[THING_SIDES * THING_SIDES]; /* sums of products of these weights */
+    int low[2], high[2];                            /* px: its rectangle there */
 };
 
 /* What tells which way the surface of a pixel faces. */
@@ -50,7 +50,8 @@ struct thing_geometry {
 /* Adds the radiance of a view's pixels to the sights. photo: of the view. geometry: NULL: sides stay as they are. */
 void thing_sights_add_radiance(struct thing_sight *sights, const uint32_t *mask, const struct image *photo,
                                const struct thing_geometry *geometry);
-/* Sets the mean radiance of a thing and of its sides; sides that few pixels show have the mean. */
+/* Sets the mean radiance of a thing, and that of its sides that explains its pixels best; a side that few of them show
+ * is near the mean. */
 void thing_sight_radiance(struct thing *t, const struct thing_sight *s);
 /* Adds a view's mask to the sights, one for each of `count` things. ST_NOMEM. */
 enum status thing_sights_add(struct thing_sight *sights, int count, const uint32_t *mask, const struct view *view,

@@ -67,8 +67,8 @@ static double towards_normal(const struct lamp_sight *s, const struct lamp *l, i
     return s->radiance[colour] / fmax(pow(cos(s->angle), l->exponent), 1e-3);
 }
 
-/* Whether most views of the lamp are saturated. Then one that shows less than half of what the brightest of them shows at
- * least does not show the lamp: something hides it there. */
+/* Whether most views of the lamp are saturated. Then one that shows less than half of what the brightest of them
+ * shows at least does not show the lamp: something hides it there. */
 static bool is_bright(const struct solve_inputs *in, int lamp)
 {
     const struct observations *o = in->seen;

@@ -388,7 +388,8 @@ static void the_sides_of_a_thing_have_the_radiance_of_what_faces_their_way(void 
     const struct image photo = {.width = W, .height = H, .channels = 4, .data = rgba};
     const struct thing_geometry geometry = {&v, &camera, z, 2};
     const struct vec3 normal = vec3_make(0.6, 0, -0.8);
-    enum { EAST, DOWN = 5 };
+    enum { EAST, WEST, NORTH, DOWN = 5 };
+    static const int own[] = {0, 7, 14, 21, 28, 35}; /* of the products of a side's weight with itself */
     struct thing_sight s = {0};
     struct thing t = {0};
     (void)state;
@@ -402,27 +403,28 @@ static void the_sides_of_a_thing_have_the_radiance_of_what_faces_their_way(void 
         for (int c = 0; c < 4; c++) rgba[4 * i + c] = c == 3 ? 1 : (float)c + 0.5F;
     }
     thing_sights_add_radiance(&s, mask, &photo, &geometry);
-    assert_true(s.pixels == PIXELS && s.side_weight[EAST] > 0.36 * PIXELS / 10);
-    assert_true(fabs(s.side_weight[EAST] / s.side_weight[DOWN] - 0.36 / 0.64) < 1e-3);
+    assert_true(s.pixels == PIXELS && s.side_weights[own[EAST]] > 0.36 * 0.36 * PIXELS / 10);
+    assert_true(fabs(s.side_weights[own[EAST]] / s.side_weights[own[DOWN]] - 0.36 * 0.36 / (0.64 * 0.64)) < 1e-3);
     thing_sight_radiance(&t, &s);
     for (int c = 0; c < 3; c++) {
         assert_true(fabs(t.radiance[c] - (c + 0.5)) < 1e-6);
         for (int k = 0; k < THING_SIDES; k++) assert_true(fabs(t.sides[k][c] - (c + 0.5)) < 1e-6);
     }
-    for (int k = 1; k < DOWN; k++) assert_true(s.side_weight[k] < 1e-3 * s.side_weight[EAST]);
-    /* the same surface in another colour, seen from where it faces west, changes no other side */
+    for (int k = 1; k < DOWN; k++) assert_true(s.side_weights[own[k]] < 1e-3 * s.side_weights[own[EAST]]);
+    /* the same surface in another colour, seen from where it faces west: blended sides have the colours of both */
     for (int i = 0; i < N * N * N; i++) {
         const struct vec3 p = vec3_sub(thing_voxel_centre(&grid, i), vec3_make(0, 0, 1));
         distance[i] = (float)(0.3 * vec3_dot(vec3_make(-0.6, 0, -0.8), p));
     }
     for (int i = 0; i < PIXELS; i++) {
         z[i] = (float)(0.5 * 1.6 / (0.8 + 0.6 * (i % W + 0.5 - W / 2) / 100));
-        rgba[4 * i] = 9;
+        rgba[4 * i] = 1;
     }
     thing_sights_add_radiance(&s, mask, &photo, &geometry);
     thing_sight_radiance(&t, &s);
-    assert_true(fabs(t.sides[EAST][0] - 0.5) < 1e-6 && fabs(t.sides[EAST + 1][0] - 9) < 1e-6);
-    assert_true(t.sides[DOWN][0] > 3 && t.sides[DOWN][0] < 6);
+    const double down = 0.64 * t.sides[DOWN][0];
+    assert_true(fabs(0.36 * t.sides[EAST][0] + down - 0.5) < 0.01 && fabs(0.36 * t.sides[WEST][0] + down - 1) < 0.01);
+    assert_true(fabs(t.sides[EAST][1] - 1.5) < 1e-6 && fabs(t.sides[NORTH][0] - t.radiance[0]) < 1e-2);
 }
 
 int main(void)

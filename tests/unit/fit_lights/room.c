@@ -29,7 +29,8 @@ static struct room {
     struct solved_lights solved;
     double (*indirect)[3];
 } room;
-static int places; /* rays of a lamp without marks */
+static int places;                              /* rays of a lamp without marks */
+static const struct model_rays *furnished_rays; /* NULL: without furniture */
 static bool lamp_is_off;
 
 static double indirect_at(struct vec3 at) { return 1 + 0.15 * at.x - 0.1 * at.y; }
@@ -168,8 +169,8 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
     if (!annotation_list_read(&room.notes, scratch_write("lights.txt", text), NULL, err))
         lit_scene_resolve(&room.scene, &room.notes, &room.model, 5, places, err);
     if (!err->status)
-        observe(&room.seen, &room.scene, &room.notes, &room.model, &room.model.rays, scratch, scratch_path("ids"),
-                &params, &prov, err);
+        observe(&room.seen, &room.scene, &room.notes, &room.model, furnished_rays ? furnished_rays : &room.model.rays,
+                scratch, scratch_path("ids"), &params, &prov, err);
     if (!err->status) direct_light_make(&room.direct_light, &room.scene, &room.model.rays, err);
     room.indirect = calloc((size_t)room.scene.point_count + 1, sizeof *room.indirect);
     for (int i = 0; i < room.scene.point_count; i++)
@@ -369,8 +370,8 @@ static const char *candidates(void)
     places = 160;
     assert_ok(solve("beta fit exponent 1", "", &err), err);
     places = 0;
-    assert_ok(mark_candidates_write(&room.scene, &room.notes, &room.model, scratch, scratch_path("ids"), &params,
-                                    scratch_path("candidates.txt"), &prov, &err),
+    assert_ok(mark_candidates_write(&room.scene, &room.notes, &room.model, &room.model.rays, scratch,
+                                    scratch_path("ids"), &params, scratch_path("candidates.txt"), &prov, &err),
               err);
     provenance_release(&prov);
     text[0] = 0;
@@ -437,6 +438,76 @@ static void a_lamp_of_which_nothing_is_known_stays_as_photographed(void **state)
     assert_true(room.scene.lights.lamps[0].radiance.g == 0);
 }
 
+/* Of points on the floor, those with x in this range. */
+static int observations_of(double from, double to)
+{
+    int count = 0;
+    for (int i = 0; i < room.seen.count; i++) {
+        const struct vec3 at = room.scene.points[room.seen.items[i].point].at;
+        count += at.z < -1.99 && at.x > from && at.x < to;
+    }
+    return count;
+}
+
+/* A board over x > 0.3, half a metre above the floor. What the pictures show behind it does not count as the floor,
+ * but at a place that a person marked. */
+static void furniture_hides_places_from_the_photos(void **state)
+{
+    static const struct vec3 board[2][3] = {{{0.3, -2, -1.5}, {2, -2, -1.5}, {2, 2, -1.5}},
+                                            {{0.3, -2, -1.5}, {2, 2, -1.5}, {0.3, 2, -1.5}}};
+    const struct model_extra furniture = {board, 2};
+    struct model_rays furnished = {0};
+    struct err err = ERR_INIT;
+    char text[200];
+    (void)state;
+    assert_ok(solid_mesh_write(&room.model.rays.mesh, scratch_path("model.txt"), NULL, &err), err);
+    assert_ok(model_rays_read_with(&furnished, scratch_path("model.txt"), MODEL_WITHOUT_GLASS, &furniture, NULL, &err),
+              err);
+    places = 160;
+    assert_ok(solve("beta 20 exponent 1", "", &err), err);
+    const int open = observations_of(-2, 0.2);
+    assert_true(open > 20 && observations_of(0.6, 2) > 10);
+    furnished_rays = &furnished;
+    assert_ok(solve("beta 20 exponent 1", "", &err), err);
+    assert_int_equal(observations_of(-2, 0.2), open);
+    assert_int_equal(observations_of(0.6, 2), 0);
+    places = 0;
+    snprintf(text, sizeof text, "lit spot in a %s of floor\n", pixel(0, 0.9, 0, -2));
+    assert_ok(solve("beta 20 exponent 1", text, &err), err);
+    assert_int_equal(observations_of(0.8, 1), 1);
+    furnished_rays = NULL;
+    assert_ok(solve("beta 20 exponent 1", text, &err), err);
+    assert_int_equal(observations_of(0.8, 1), 2);
+    model_rays_release(&furnished);
+}
+
+/* Two views show the lamp saturated, one the wardrobe before it: the lamp is at least as bright as the two say. */
+static void a_view_in_which_a_lamp_is_hidden_does_not_measure_it(void **state)
+{
+    static struct lamp_sight sights[] = {
+        {0, 0, 0, {4, 4, 4}, true}, {0, 1, 0, {3, 3, 3}, true}, {0, 2, 0, {0.3, 0.2, 0.1}, false}};
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(solve("beta 90", "", &err), err);
+    const struct observations seen = {.sights = sights, .sight_count = 3};
+    struct solve_inputs in = {&room.scene,
+                              &room.notes,
+                              &seen,
+                              &room.direct_light,
+                              (const double(*)[3])room.indirect,
+                              &room.model.rays,
+                              &(struct fit_lights_params)FIT_LIGHTS_PARAMS_DEFAULT,
+                              false};
+    for (int step = 0; step < 2; step++) {
+        struct solved_lights found = {0};
+        assert_ok(solve_lights(&found, &in, &err), err);
+        assert_true(found.lamps[0].source == (step ? LAMP_MEASURED : LAMP_BOUND));
+        assert_true(fabs(room.scene.lights.lamps[0].radiance.r - (step ? 3.5 : 4)) < 1e-6);
+        solve_release(&found);
+        sights[2].radiance[0] = 3.5; /* brighter than half: it shows the lamp */
+    }
+}
+
 /* A board half way to the floor, over x > 0. A point of the floor sees the whole lamp if it is at x < -radius, and none
  * of it at x > radius. */
 static void furniture_hides_a_lamp(void **state)
@@ -479,6 +550,8 @@ int main(void)
         cmocka_unit_test(photos_without_an_edge_give_no_marks),
         cmocka_unit_test(a_lamp_that_no_photo_can_place_is_left_out),
         cmocka_unit_test(furniture_hides_a_lamp),
+        cmocka_unit_test(furniture_hides_places_from_the_photos),
+        cmocka_unit_test(a_view_in_which_a_lamp_is_hidden_does_not_measure_it),
         cmocka_unit_test(a_marked_face_tells_beside_its_marks),
         cmocka_unit_test(a_lamp_of_which_nothing_is_known_stays_as_photographed),
     };
