@@ -10,7 +10,7 @@ printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[light_levels]\
 printf 'remodel-script 1\n# A dark floor.\npaint floor/hall 0.05 0.05 0.05\n' >scenes/t/edits/dark.txt
 printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
 ies='IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n1000 1000\n'
-printf "$ies" >scenes/t/globe.ies
+printf '%b' "$ies" >scenes/t/globe.ies
 printf 'remodel-states 1\nsite 52.5 13.4 1\nlamp globe ies globe.ies at 0 8 18\nstate noon lamps off sky clear 6 21 12\nstate new lamps off lamp globe 1\n' >scenes/t/states.txt
 m lux EDIT=dark LUX_PHOTOS='photo_1 photo_2'
 O=out/t
@@ -73,7 +73,7 @@ a_room_without_a_scale_has_a_guessed_metre()
 planned_lamps_shine_in_the_states_that_name_them()
 {
     local metre=8 # of 20 units a room
-    printf "$ies" >lamp.ies
+    printf '%b' "$ies" >lamp.ies
     awk -v m="$metre" 'BEGIN { printf "remodel-places 1\nplace below at 0 8 height %.9g\n", 0.75 * m }' >below.txt
     awk -v m="$metre" 'BEGIN { printf "remodel-states 1\nlamp new ies lamp.ies at 0 8 %.9g\nstate new lamps off lamp new 1\nstate half lamps off lamp new 0.5\nstate without lamps off\nstate mixed lamp new 1\n", 2.25 * m > "planned.txt" }'
     levels 0 'the state mixed has lamps of the photographs' --states planned.txt --places below.txt --out two/planned
