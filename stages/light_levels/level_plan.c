@@ -1,8 +1,7 @@
 /* level_plan.c - see level_plan.h.
  *
- * Each point of a work plane is a square of its spacing, in the colour of its value (level_scale.h). In each square of
- * four points a level cuts the sides where it lies between their values, at the place of linear
- * interpolation. Every line has its level once a room. */
+ * Each point of a work plane is a square of its spacing, in the colour of its value (level_scale.h). Isolines
+ * (level_lines.h) bear their level once a room. */
 #include "stages/light_levels/level_plan.h"
 
 #include <math.h>
@@ -12,7 +11,10 @@
 #include "common/base/outfile.h"
 #include "common/model/plan_sheet.h"
 #include "stages/light_levels/level_lattice.h"
+#include "stages/light_levels/level_lines.h"
 #include "stages/light_levels/level_scale.h"
+
+static const double KEY = 0.06; /* of the plan's larger side: height of the key below it */
 
 struct drawing {
     const struct level_picture *picture;
@@ -32,59 +34,67 @@ static void put_square(const struct drawing *d, double x, double y, double side,
 
 /* --------------------------------------------------------------------------------------------------------- isolines */
 
-/* Where a level cuts the sides of a square: pairs of places. Corners are in order around it. */
-static int cut_square(double cuts[4][2], const double corner[4][2], const double value[4], double level)
+/* The line of a level, in the lattice: rows go up. */
+struct level_drawing {
+    const struct drawing *d;
+    const struct level_lattice *lattice;
+    double level;
+    bool named;
+};
+
+static void put_path(const struct level_drawing *l, const char *class, const double (*at)[2], int count)
 {
-    int count = 0;
-    for (int k = 0; k < 4; k++) {
-        const int n = (k + 1) % 4;
-        if ((value[k] < level) == (value[n] < level)) continue;
-        const double t = (level - value[k]) / (value[n] - value[k]);
-        for (int c = 0; c < 2; c++) cuts[count][c] = corner[k][c] + t * (corner[n][c] - corner[k][c]);
-        count++;
-    }
-    return count;
+    const struct plan_sheet *sheet = &l->d->sheet;
+    fprintf(sheet->to, "<path class=\"%s\" d=\"", class);
+    for (int i = 0; i < count; i++)
+        fprintf(sheet->to, "%s%.2f %.2f", i ? "L" : "M", plan_sheet_x(sheet, l->lattice->x + at[i][0]),
+                plan_sheet_y(sheet, l->lattice->y + at[i][1]));
+    fputs("\"/>\n", sheet->to);
 }
 
-static void put_level(const struct drawing *d, const struct level_lattice *l, double level)
+static void put_line(void *ctx, const double (*at)[2], int count)
 {
-    static const int around[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    bool named = false;
-    for (int i = 0; i + 1 < l->height; i++)
-        for (int j = 0; j + 1 < l->width; j++) {
-            double corner[4][2], value[4], cuts[4][2];
-            bool whole = true;
-            for (int k = 0; k < 4; k++) {
-                const int x = j + around[k][0], y = i + around[k][1], point = l->point[y * l->width + x];
-                whole &= point >= 0;
-                corner[k][0] = l->x + x * l->step;
-                corner[k][1] = l->y + y * l->step;
-                value[k] = point >= 0 ? d->picture->values[point] : 0;
-            }
-            const int count = whole ? cut_square(cuts, (const double(*)[2])corner, value, level) : 0;
-            for (int k = 0; k + 1 < count; k += 2)
-                fprintf(d->sheet.to, "<path class=\"level\" d=\"M%.2f %.2fL%.2f %.2f\"/>\n",
-                        plan_sheet_x(&d->sheet, cuts[k][0]), plan_sheet_y(&d->sheet, cuts[k][1]),
-                        plan_sheet_x(&d->sheet, cuts[k + 1][0]), plan_sheet_y(&d->sheet, cuts[k + 1][1]));
-            if (count && !named) {
-                char text[32];
-                snprintf(text, sizeof text, "%g", level);
-                plan_sheet_put_text(&d->sheet, (cuts[0][0] + cuts[1][0]) / 2, (cuts[0][1] + cuts[1][1]) / 2, "number",
-                                    text);
-                named = true;
-            }
-        }
+    struct level_drawing *l = ctx;
+    char text[32];
+    put_path(l, "under", at, count);
+    put_path(l, "level", at, count);
+    if (l->named) return;
+    const double *middle = at[count / 2];
+    snprintf(text, sizeof text, "%g", l->level);
+    plan_sheet_put_text(&l->d->sheet, l->lattice->x + middle[0], l->lattice->y + middle[1], "number", text);
+    l->named = true;
+}
+
+static enum status put_levels(const struct drawing *d, const struct level_lattice *lattice, struct err *err)
+{
+    const size_t count = (size_t)lattice->width * (size_t)lattice->height;
+    struct level_grid grid = {lattice->width, lattice->height, lattice->step, calloc(count + 1, sizeof(float)),
+                              malloc((count + 1) * sizeof(int))};
+    if (!grid.values || !grid.surface) err_nomem(err, "isolines", count * sizeof(float));
+    for (size_t i = 0; !err->status && i < count; i++) {
+        const int point = lattice->point[i];
+        grid.surface[i] = point >= 0 ? 0 : -1;
+        if (point >= 0) grid.values[i] = (float)d->picture->values[point];
+    }
+    for (int k = 0; !err->status && k < d->scale.line_count; k++) {
+        struct level_drawing l = {d, lattice, d->scale.lines[k], false};
+        level_lines_find(&grid, l.level, put_line, &l, err);
+    }
+    free(grid.values);
+    free(grid.surface);
+    return err->status;
 }
 
 static enum status put_area(const struct drawing *d, const struct sensor_area *a, struct err *err)
 {
     struct level_lattice l;
-    if (level_lattice_make(&l, d->sensors, a, err)) return err->status;
-    for (int i = a->first; i < a->first + a->count; i++)
-        put_square(d, d->sensors->points[i].at.x, d->sensors->points[i].at.y, a->step, d->picture->values[i]);
-    for (int k = 0; k < d->scale.line_count; k++) put_level(d, &l, d->scale.lines[k]);
+    if (!level_lattice_make(&l, d->sensors, a, err)) {
+        for (int i = a->first; i < a->first + a->count; i++)
+            put_square(d, d->sensors->points[i].at.x, d->sensors->points[i].at.y, a->step, d->picture->values[i]);
+        put_levels(d, &l, err);
+    }
     level_lattice_release(&l);
-    return ST_OK;
+    return err->status;
 }
 
 /* The means of named places, written where they are. */
@@ -93,14 +103,14 @@ static void put_places(const struct drawing *d)
     for (int k = 0; k < d->sensors->area_count; k++) {
         const struct sensor_area *a = &d->sensors->areas[k];
         double x = 0, y = 0, mean = 0;
-        char text[128];
+        char text[128], number[32];
         if (a->kind != SENSOR_PLACE) continue;
         for (int i = a->first; i < a->first + a->count; i++) {
             x += d->sensors->points[i].at.x / a->count;
             y += d->sensors->points[i].at.y / a->count;
             mean += d->picture->values[i] / a->count;
         }
-        snprintf(text, sizeof text, "%s %.3g", a->name, mean);
+        snprintf(text, sizeof text, "%s %s", a->name, level_scale_number(number, mean));
         plan_sheet_put_text(&d->sheet, x, y, "place", text);
     }
 }
@@ -109,14 +119,14 @@ static void put_title(const struct drawing *d)
 {
     const struct sensors *s = d->sensors;
     double low = INFINITY, high = 0;
-    char text[256];
+    char text[256], numbers[2][32];
     for (int a = 0; a < s->area_count; a++)
         for (int i = 0; s->areas[a].kind == SENSOR_WORK_PLANE && i < s->areas[a].count; i++) {
             low = fmin(low, d->picture->values[s->areas[a].first + i]);
             high = fmax(high, d->picture->values[s->areas[a].first + i]);
         }
-    snprintf(text, sizeof text, "%s: %.3g to %.3g %s on the work planes", d->picture->title, fmin(low, high), high,
-             d->picture->unit);
+    snprintf(text, sizeof text, "%s: %s to %s %s on the work planes", d->picture->title,
+             level_scale_number(numbers[0], fmin(low, high)), level_scale_number(numbers[1], high), d->picture->unit);
     plan_sheet_put_text(&d->sheet, (d->sheet.low[0] + d->sheet.high[0]) / 2, d->sheet.high[1] - 24 / d->sheet.scale,
                         "name", text);
 }
@@ -137,6 +147,8 @@ enum status level_plan_write(const struct level_picture *picture, const struct s
     struct outfile f = {0};
     if (outfile_open(&f, path, err)) return err->status;
     plan_sheet_fit(&d.sheet, plan);
+    const double wide = fmax(d.sheet.high[0] - d.sheet.low[0], d.sheet.high[1] - d.sheet.low[1]);
+    plan_sheet_hold(&d.sheet, d.sheet.low[0], d.sheet.low[1] - KEY * wide);
     plan_sheet_begin(&d.sheet, f.fp, "Light levels", LEVEL_STYLES);
     plan_sheet_put_plan(&d.sheet, plan);
     for (int k = 0; !err->status && k < sensors->area_count; k++)

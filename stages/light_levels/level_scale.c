@@ -32,6 +32,17 @@ void level_scale_colour(const struct level_scale *s, double value, unsigned char
     colour_of_ramp(level_scale_place(s, value), rgb);
 }
 
+const char *level_scale_number(char text[32], double value)
+{
+    if (!(value >= 999.5)) {
+        snprintf(text, 32, "%.3g", value);
+        return text;
+    }
+    const double step = pow(10, floor(log10(value)) - 2);
+    snprintf(text, 32, "%.0f", step * round(value / step));
+    return text;
+}
+
 void level_scale_put_key(const struct level_scale *s, FILE *to, double x, double y, double width)
 {
     for (int i = 0; i < STEPS; i++) {

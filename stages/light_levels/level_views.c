@@ -314,13 +314,15 @@ static enum status draw_lines(FILE *to, const struct level_view *v, const float 
 static void put_title(FILE *to, const struct level_view *v, const struct level_views_state *state, const float *values)
 {
     double low = INFINITY, high = 0;
+    char numbers[2][32];
     for (int i = 0; i < v->width * v->height; i++)
         if (isfinite(values[i])) {
             low = fmin(low, (double)values[i]);
             high = fmax(high, (double)values[i]);
         }
     fprintf(to, "<text class=\"name\" x=\"%d\" y=\"%d\">", v->width / 2, v->height + 17);
-    fprintf(to, "%s, %s: %.3g to %.3g %s</text>\n", state->name, v->name, fmin(low, high), high, state->unit);
+    fprintf(to, "%s, %s: %s to %s %s</text>\n", state->name, v->name, level_scale_number(numbers[0], fmin(low, high)),
+            level_scale_number(numbers[1], high), state->unit);
 }
 
 static enum status write_view(const struct level_view *v, const struct level_light *light, const double *patches,

@@ -78,7 +78,7 @@ enum status page_write(struct page *page, const char *scene, const char *numbers
 {
     FILE *to = page->to;
     if (put_people_head(page, scene, numbers, c, err) || put_rooms(page, c, err) || page_films(page, c, err) ||
-        page_plan(page, c, err) || page_photos(page, c, err))
+        page_plan(page, c, err) || page_levels_part(page, c, err) || page_photos(page, c, err))
         return err->status;
     page_few_numbers(to, c);
     if (c->rooms.photo_count || c->rooms.note_count) page_rooms_how(to, &c->rooms);

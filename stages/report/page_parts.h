@@ -27,6 +27,7 @@ void page_remove_old(const char *folder, const struct name_list *kept);
  * ST_NOMEM; ST_IO: a picture cannot be written. */
 enum status page_films(struct page *page, const struct contents *c, struct err *err);
 enum status page_plan(struct page *page, const struct contents *c, struct err *err);
+enum status page_levels_part(struct page *page, const struct contents *c, struct err *err);
 enum status page_photos(struct page *page, const struct contents *c, struct err *err);
 void page_few_numbers(FILE *to, const struct contents *c);
 

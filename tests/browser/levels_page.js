@@ -57,9 +57,15 @@ const tryTheSums = async (page, sheet) => {
     await compare(page, 'lamps_off_leaves_daylight', 'daylight', sheet);
     await page.run(set('sky', 'overcast'));
     await compare(page, 'an_overcast_sky_is_that_of_the_sheet', 'overcast', sheet);
+    if (sheet.planned) {
+        const number = await page.run('[...document.querySelectorAll("#lamps label")].findIndex((l) => /planned/.test(l.textContent))');
+        await page.run(set('sky', 'none') + ';' + set(`lamp${number}`, 100));
+        await compare(page, 'a_planned_lamp_shines_without_a_scale', 'planned', sheet);
+        await page.run(set(`lamp${number}`, 0));
+    }
     await page.run(set('sky', 'none') + ';' + press('on'));
     const full = await page.run(ROWS);
-    await page.run('document.querySelectorAll("#lamps input").forEach((e) => { e.value = 50; ' +
+    await page.run('document.querySelectorAll("#lamps input").forEach((e) => { e.value = e.value > 0 ? 50 : 0; ' +
         'e.dispatchEvent(new Event("input")); })');
     const half = await page.run(ROWS);
     check('dimmed_lamps_give_half', full.every((r, i) => near(2 * half[i].mean, r.mean)), JSON.stringify(half[0]));

@@ -10,8 +10,8 @@ printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[light_levels]\
 printf 'remodel-script 1\n# A dark floor.\npaint floor/hall 0.05 0.05 0.05\n' >scenes/t/edits/dark.txt
 printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
 ies='IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n1000 1000\n'
-printf '%b' "$ies" >scenes/t/globe.ies
-printf 'remodel-states 1\nsite 52.5 13.4 1\nlamp globe ies globe.ies at 0 8 18\nstate noon lamps off sky clear 6 21 12\nstate new lamps off lamp globe 1\n' >scenes/t/states.txt
+printf '%b' "$ies" >scenes/t/new.ies
+printf 'remodel-states 1\nsite 52.5 13.4 1\nlamp new ies new.ies at 0 8 18\nstate noon lamps off sky clear 6 21 12\nstate planned lamps off lamp new 1\n' >scenes/t/states.txt
 m lux EDIT=dark LUX_PHOTOS='photo_1 photo_2'
 O=out/t
 inputs=(--config scenes/t/scene.cfg --model "$O/model/model.txt" --plan "$O/model/plan.txt" --axes "$O/model/axes.txt" --vita "$O/vita" --outdoors "$O/outdoors/outdoors.exr")
@@ -50,10 +50,10 @@ make_lux_has_a_sheet_of_the_room_and_of_the_edit()
     m lux EDIT=dark LUX_PHOTOS='photo_1 photo_2'
     ! grep -q light_levels log || { cat log; fail "a second make made it again"; }
     # an IES file is read again when it changes
-    was=$(cell "$s" new place desk 5)
-    sed -i 's/^1000 1000$/2000 2000/' scenes/t/globe.ies
+    was=$(cell "$s" planned place desk 5)
+    sed -i 's/^1000 1000$/2000 2000/' scenes/t/new.ies
     m lux LUX_PHOTOS='photo_1 photo_2'
-    awk -v a="$was" -v b="$(cell "$s" new place desk 5)" 'BEGIN { exit !(a > 0 && (b - 2 * a) ^ 2 < (0.01 * a) ^ 2) }' || { grep ^new "$s"; fail "a changed IES file was not read"; }
+    awk -v a="$was" -v b="$(cell "$s" planned place desk 5)" 'BEGIN { exit !(a > 0 && (b - 2 * a) ^ 2 < (0.01 * a) ^ 2) }' || { grep ^planned "$s"; fail "a changed IES file was not read"; }
 }
 
 # a metre is a guess by the rooms' height: the work plane of a sheet is 0.75 of it up, and its interval is wide

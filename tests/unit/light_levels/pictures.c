@@ -96,6 +96,10 @@ static void a_unit_has_one_range_and_rising_colours(void **state)
     assert_near(lx.lines[0], 10, 1e-9);
     assert_near(lx.lines[lx.line_count - 1], 10000, 1e-6);
     assert_near(level_scale_of("%", 1).high, 100, 1e-9);
+    char text[32];
+    assert_string_equal(level_scale_number(text, 15523), "15500");
+    assert_string_equal(level_scale_number(text, 999.6), "1000");
+    assert_string_equal(level_scale_number(text, 0.01234), "0.0123");
     for (double v = 10; v <= 10000; v *= 1.2) { /* grey prints keep the order */
         unsigned char c[3];
         level_scale_colour(&lx, v, c);
