@@ -1,5 +1,5 @@
-/* page_levels_part.c - light levels on the page of a scene: a plan and a photo of the photographed light, and the way to
- * the page that has sliders. */
+/* page_levels_part.c - light levels on the page of a scene: a plan and a photo of the photographed light, and the way
+ * to the page that has sliders. */
 #include "stages/report/contents_parts.h"
 #include "stages/report/page_parts.h"
 
