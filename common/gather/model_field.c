@@ -10,8 +10,8 @@
  * through.
  *
  * Lamps. A lamp is a place of a ceiling, and the two agree to some millimetres only; a lamp that is up to `reach`
- * behind the surface that a ray meets is still in front of it. Texels under a lamp and around it are replaced when the
- * field is read (field_atlas.c), so that no light counts twice.
+ * behind the surface that a ray meets is still in front of it, unless that lies across the lamp's plane. Texels under a
+ * lamp and around it are replaced when the field is read (field_atlas.c), so that no light counts twice.
  *
  * Emitters say where bright light is: every lamp; the openings of lights.txt; panes of the model that lights.txt does
  * not name, since the sky lights through those too; panes that an edit has moved or resized, whatever lights.txt says
@@ -29,6 +29,7 @@
 
 static const double HANGING = 0.1;     /* of the model's size: lamps further from a face leave its texels alone */
 static const double SAME_PANE = 0.01;  /* of its size: how far a pane may move and is still the same */
+static const double ACROSS = 0.7;      /* cosine to a lamp's normal */
 static const double PANE_REACH = 0.01; /* of the model's size: beyond that, a pane's surroundings are looked at */
 
 /* ------------------------------------------------------------------------------------------------------------- look */
@@ -51,6 +52,11 @@ const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 fro
         *at = distance;
     }
     return found;
+}
+
+bool model_field_hides_lamp(const struct lamp *lamp, double at, const struct ray_hit *hit)
+{
+    return hit->t < at && fabs(vec3_dot(hit->normal, lamp->normal)) < ACROSS;
 }
 
 static void see_face(struct light_look *seen, const struct model_field *f, const struct ray_hit *hit,
@@ -126,7 +132,7 @@ static void look_from(const struct model_field *f, const struct vec3 from[RAY_PA
         if (!(active >> k & 1)) continue;
         const double t = hit >> k & 1 ? hits[k].t : INFINITY;
         const struct lamp *lamp = model_field_lamp(f, origin[k], direction[k], t, &at);
-        if (lamp) {
+        if (lamp && !(hit >> k & 1 && model_field_hides_lamp(lamp, at, &hits[k]))) {
             seen[k] = (struct light_look){lamp_radiance(lamp, vec3_scale(direction[k], -1)), at, LIGHT_LAMP, -1};
         } else if (hit >> k & 1) {
             faces |= 1u << k;

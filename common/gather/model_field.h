@@ -92,6 +92,10 @@ void model_field_add_changed_panes(struct model_field *f, const struct model_fie
 const struct lamp *model_field_lamp(const struct model_field *f, struct vec3 from, struct vec3 direction, double t,
                                     double *at);
 
+/* Whether a surface hides a lamp at the distance `at` beyond it, however near: one across the lamp's plane does, such
+ * as a wall that an edit puts under it. The ceiling that the lamp lies on may be in front of it by an error. */
+bool model_field_hides_lamp(const struct lamp *lamp, double at, const struct ray_hit *hit);
+
 /* What a ray that leaves the model sees of the outdoors: through an opening with reference images theirs, otherwise
  * outdoors.exr. */
 enum light_source model_field_outdoors(struct rgb *radiance, const struct model_field *f, struct vec3 from,

@@ -27,7 +27,6 @@
 #include "common/light/sobol.h"
 #include "common/math/numbers.h"
 
-static const double ACROSS = 0.7; /* cosine to a lamp's normal */
 enum { SUN_RAYS = 16, LAMP_RAYS = 64, LEAST_WINDOW_RAYS = 16, CHUNK = 16 };
 
 /* What one thread works with. */
@@ -280,16 +279,15 @@ static double lamp_sends(const struct source *s, const struct lamp *l, const dou
     return rgb_luminance(lamp_radiance(l, vec3_scale(*direction, -1))) * cosine * rise / (*distance * *distance);
 }
 
-/* Whether a surface hides a place of a lamp at a distance. Beyond `reach` only a surface across the lamp's plane does,
- * such as a wall that an edit puts under it: the ceiling that the lamp lies on may be in front of it by an error. */
-static bool is_hidden(const struct source *s, struct vec3 direction, double distance, double reach, struct vec3 normal)
+/* Whether a surface hides a place of a lamp at a distance. */
+static bool is_hidden(const struct source *s, const struct lamp *l, struct vec3 direction, double distance,
+                      double reach)
 {
     const struct ray_scene *scene = &s->job->groups->field->model.rays;
     struct ray_hit hit;
     if (!(reach > 0)) return false;
     if (ray_scene_blocked(scene, s->from, direction, reach)) return true;
-    return ray_scene_hit(scene, s->from, direction, &hit) && hit.t < distance &&
-           fabs(vec3_dot(hit.normal, normal)) < ACROSS;
+    return ray_scene_hit(scene, s->from, direction, &hit) && model_field_hides_lamp(l, distance, &hit);
 }
 
 /* The share of a lamp's light that reaches the point. */
@@ -305,7 +303,7 @@ static double lamp_share(const struct source *s, const struct lamp *l, int lamp,
         const double sent = lamp_sends(s, l, u, &direction, &reach, &distance);
         if (!(sent > 0)) continue;
         all += sent;
-        if (!is_hidden(s, direction, distance, reach, l->normal)) seen += sent;
+        if (!is_hidden(s, l, direction, distance, reach)) seen += sent;
     }
     return all > 0 ? seen / all : 0;
 }

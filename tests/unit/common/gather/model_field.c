@@ -149,6 +149,25 @@ static void a_lamp_a_little_behind_the_ceiling_is_seen(void **state)
     model_field_release(&b.field);
 }
 
+/* The wall ends at the ceiling, 2 cm below the lamp's plane on these rays. */
+static void a_thin_wall_under_a_lamp_hides_the_part_beyond_it(void **state)
+{
+    static const struct box divided[] = {
+        ROOM_OUTSIDE, ROOM_INSIDE, {"across", "across", {-0.001, -2, -2}, {0.001, 2, 2}, false}};
+    struct built b = {.files = {.model = write_boxes(divided, 3), .vita = write_vita(grey, 6, 0)}};
+    b.files.lights = write_lights("quad lamp 0 0 2.01 0.2 0 0 0 -0.3 0 7 7 7 90 0\n");
+    const struct model_field *f = read_field(&b);
+    const struct vec3 east = {0.5, 0, 1}, west = {-0.5, 0, 1};
+    (void)state;
+    assert_near(f->reach, 0.03, 1e-9);
+    for (int side = 0; side < 2; side++) {
+        const struct vec3 from = side ? east : west, own = {side ? 0.01 : -0.01, 0, 2.01}, other = {-own.x, 0, 2.01};
+        assert_int_equal(look_one(f, from, up, vec3_sub(own, from)).source, LIGHT_LAMP);
+        assert_true(look_one(f, from, up, vec3_sub(other, from)).source != LIGHT_LAMP);
+    }
+    model_field_release(&b.field);
+}
+
 static void a_lamp_that_hangs_is_not_seen_from_behind(void **state)
 {
     struct built b = {.files = {.model = write_boxes(room, 2), .vita = write_vita(grey, 6, 0)}};
@@ -375,6 +394,7 @@ int main(void)
         cmocka_unit_test(a_point_just_below_a_surface_is_moved_to_it),
         cmocka_unit_test(a_lamp_shines_within_its_cone_alone),
         cmocka_unit_test(a_lamp_a_little_behind_the_ceiling_is_seen),
+        cmocka_unit_test(a_thin_wall_under_a_lamp_hides_the_part_beyond_it),
         cmocka_unit_test(a_lamp_that_hangs_is_not_seen_from_behind),
         cmocka_unit_test(texels_under_a_lamp_and_around_it_do_not_light_the_room_again),
         cmocka_unit_test(a_gather_finds_a_lamps_irradiance),
