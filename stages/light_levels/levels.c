@@ -52,6 +52,10 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
         level_metre_find(&j->scene.metre, &j->scene.axes, &j->plan, &j->params, err))
         return err->status;
     j->scene.planned = &j->states.planned;
+    if (!j->plan.room_count)
+        log_warn(
+            "the model has no room, so that the sky shines in where floors and ceilings should be, and there are "
+            "no work planes. Add lines `room NAME WALL WALL WALL ...` to model.txt, as docs/model-script.md explains.");
     if (j->scene.metre.guessed)
         log_warn("the scene has no scale, so that a metre is a guess: %.3g units (%.3g to %.3g), by rooms %g m high "
                  "(%g to %g). It sets the work plane and the distances of points%s. Give the scale as "

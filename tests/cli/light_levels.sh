@@ -69,6 +69,14 @@ a_room_without_a_scale_has_a_guessed_metre()
     levels 0 'by rooms 5 m high' --set room_height=5 --out two/guess5
 }
 
+# in walls alone, as `make suggest` may leave them, the sky would shine in unnoticed
+a_model_without_rooms_is_warned_of()
+{
+    grep -v '^room ' "$O/model/plan.txt" >bare.txt
+    local inputs=("${inputs[@]/$O\/model\/plan.txt/bare.txt}")
+    levels 0 'the model has no room, ' --out two/bare
+}
+
 # E = I / r^2 below a planned lamp in a black room would be 444 lx; reflected light adds to it; a factor multiplies it
 planned_lamps_shine_in_the_states_that_name_them()
 {
@@ -194,4 +202,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre a_model_without_rooms_is_warned_of planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
