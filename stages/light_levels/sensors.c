@@ -2,8 +2,8 @@
  *
  * A room's points are a lattice of the spacing, centred in its outline's box, those kept that lie in the outline and
  * `margin` from its walls, as the method of the IES has it [IES 2012]. A room too small for any has one in its middle.
- * Points of a floor below furniture are told apart from the others, because nobody walks there and their shade says
- * little about the room's light.
+ * Points of a floor below furniture make up an area of their own: nobody walks there, and their shade says little about
+ * the room's light.
  * A place's rectangle is cut into cells no wider than half the spacing, with a point in the middle of each. */
 #include "stages/light_levels/sensors.h"
 

@@ -60,7 +60,7 @@ enum { STATE_OVERCAST = 3, STATES_OF_EVERY_SCENE = 4 };
 enum status state_list_read(struct state_list *l, const char *path, struct provenance *prov, struct err *err);
 void state_list_release(struct state_list *l);
 
-/* Gives states their weather. weather NULL: there is no file. ST_DATA with file and line: a state without its hour. */
+/* Gives states their weather; weather may be NULL. ST_DATA with file and line: a state whose hour it does not have. */
 enum status state_list_take_weather(struct state_list *l, const struct weather *weather, struct err *err);
 
 #endif

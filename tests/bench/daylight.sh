@@ -22,7 +22,7 @@ settings()
 
 prepare()
 {
-    [ -x "$B/tests/bench/daylight" ] || missing "there is no program $B/tests/bench/daylight; this revision has no light levels."
+    [ -x "$B/tests/bench/daylight" ] || missing "$B/tests/bench/daylight is missing; this revision computes no light levels."
 }
 
 sample() # SERIES EFFORT

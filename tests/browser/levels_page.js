@@ -7,7 +7,7 @@ const fs = require('fs');
 const os = require('os');
 const path = require('path');
 const {Chromium} = require('./chromium.js');
-const {CONTRAST, NAMELESS, deadLinks} = require('./page_checks.js');
+const {CONTRAST, NAMELESS, deadLinks, phoneWidth, checkSize} = require('./page_checks.js');
 const folder = path.resolve(process.argv[2]), edit = process.argv[3], html = path.join(folder, 'index.html');
 let failed = 0;
 const check = (name, fine, why) => {
@@ -152,15 +152,13 @@ const main = async () => {
         await tryTheEdit(page, edited);
         await tryThePictures(page);
         check('the_console_is_empty', !page.errors.length, page.errors.join(' | '));
-        const phone = await browser.page(`file://${html}`, 390, 800);
-        const width = await phone.run('document.documentElement.scrollWidth');
+        const width = await phoneWidth(browser, `file://${html}`);
         check('the_page_fits_a_phone', width <= 390, `it is ${width} px wide`);
         await tryWithoutScripts(browser);
         const links = await page.run('[...document.querySelectorAll(".plain a")].map((a) => a.getAttribute("href"))');
         const size = [...links.map(decodeURIComponent), 'index.html']
             .reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
-        console.log(`# the page and its pictures: ${(size / 1e6).toFixed(2)} MB`);
-        check('the_page_takes_at_most_10_MB', size <= 10e6, `${size} bytes`);
+        checkSize(check, size);
     } finally {
         await browser.close(profile);
     }

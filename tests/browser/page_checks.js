@@ -56,4 +56,12 @@ const deadLinks = async (page, html) => {
     return dead;
 };
 
-module.exports = {sizeOf, CONTRAST, NAMELESS, deadLinks};
+const phoneWidth = async (browser, url) =>
+    (await browser.page(url, 390, 800)).run('document.documentElement.scrollWidth');
+
+const checkSize = (check, size) => {
+    console.log(`# the page and its pictures: ${(size / 1e6).toFixed(2)} MB`);
+    check('the_page_takes_at_most_10_MB', size <= 10e6, `${size} bytes`);
+};
+
+module.exports = {sizeOf, CONTRAST, NAMELESS, deadLinks, phoneWidth, checkSize};

@@ -9,7 +9,7 @@ const fs = require('fs');
 const os = require('os');
 const path = require('path');
 const {Chromium} = require('./chromium.js');
-const {sizeOf, CONTRAST, NAMELESS, deadLinks} = require('./page_checks.js');
+const {sizeOf, CONTRAST, NAMELESS, deadLinks, phoneWidth, checkSize} = require('./page_checks.js');
 const folder = path.resolve(process.argv[2]);
 let failed = 0;
 const check = (name, fine, why) => {
@@ -121,14 +121,12 @@ const main = async () => {
             if (name !== 'numbers') await tryTheSlider(page);
             if (name === 'scene') await tryTheChoices(page);
             check(`the_console_of_the_page_of_${name}_is_empty`, !page.errors.length, page.errors.join(' | '));
-            const phone = await browser.page(urlOf(file), 390, 800);
-            const width = await phone.run('document.documentElement.scrollWidth');
+            const width = await phoneWidth(browser, urlOf(file));
             check(`the_page_of_${name}_fits_a_phone`, width <= 390, `it is ${width} px wide`);
         }
         await tryWithoutScripts(browser, urlOf('index.html'));
         const size = sizeOf(path.join(folder, 'index.html')) + sizeOf(path.join(folder, 'page'));
-        console.log(`# the page and its pictures: ${(size / 1e6).toFixed(2)} MB`);
-        check('the_page_takes_at_most_10_MB', size <= 10e6, `${size} bytes`);
+        checkSize(check, size);
     } finally {
         await browser.close(profile);
     }
