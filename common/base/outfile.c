@@ -17,6 +17,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "common/base/ledger.h"
+
 struct live {
     struct live *next;
     atomic_long owner; /* process id; 0: unused node */
@@ -204,6 +206,7 @@ enum status outfile_commit(struct outfile *f, struct err *err)
     if (fclose(f->fp) && !err->status) err_errno(err, "write", f->path);
     f->fp = NULL;
     if (!err->status && sync_path(f->temp, 0)) err_errno(err, "write", f->path);
+    if (!err->status) ledger_add(f->path, f->temp, err);
     if (!err->status && rename(f->temp, f->path)) err_errno(err, "write", f->path);
     if (!err->status) {
         live_drop(f->temp);

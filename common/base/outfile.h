@@ -20,8 +20,8 @@ struct outfile {
  * made. */
 enum status outfile_open(struct outfile *f, const char *path, struct err *err);
 
-/* Flushes, checks for write errors (full disk), fsyncs, renames, fsyncs the folder. On failure the temporary file is
- * removed and an older file at the path is unchanged. */
+/* Flushes, checks for write errors (full disk), fsyncs, says it in the ledger of the run (ledger.h), renames, fsyncs
+ * the folder. On failure the temporary file is removed and an older file at the path is unchanged. */
 enum status outfile_commit(struct outfile *f, struct err *err);
 
 void outfile_discard(struct outfile *f); /* idempotent; does nothing after a commit */

@@ -15,7 +15,7 @@ export VIEWS_PER_JOB SLURM_ARGS
 dry = $(findstring n,$(filter-out --%,$(firstword -$(MAKEFLAGS))))
 # several goals of a scene follow each other: a run locks it, and takes all cores by itself
 .NOTPARALLEL:
-.PHONY: all list-stages help why plan status deps $(GOALS)
+.PHONY: all list-stages help why plan status verify deps $(GOALS)
 
 ifeq ($(SCENE),)
 all: deps ## everything a scene asks for; without SCENE builds the programs and runs SCENES, at draft quality by default
@@ -27,11 +27,12 @@ why:    ## what is stale, and because of what
 plan:   ## what a run would do: pieces of work, jobs, core-hours, memory, bytes written; TO=GOAL; makes and submits nothing
 status: ## what of a scene is made, stale and failed, what a run does, and how long is left; without SCENE: how each scene's last run went
 	@common/run/status_scenes.sh
-$(filter-out doctor,$(GOALS)) why plan:
+verify: ## whether photos, what a scene's folder has and all products are as runs left them, back to the photos; names each file that is not
+$(filter-out doctor,$(GOALS)) why plan verify:
 	@echo "make $@ works on a scene: make $@ SCENE=NAME ('make help' lists the scenes)." >&2; exit 2
 else
 # DEPS.GOAL, BUILDS.GOAL: packages and programs that only this goal needs
-all $(GOALS) why plan: deps
+all $(GOALS) why plan verify: deps
 	+@$(if $(INSTALLED),:,$(if $(DEPS.$@),common/run/deps.sh $(DEPS) $(DEPS.$@),:))
 	+@$(BUILD) build $(BUILDS.$@)
 	+@$(ENVIRONMENT) common/run/run_scene.sh '$(SCENE)' '$(S)' '$(O)' '$@' '$(dry)' '$(JOBS)' '$(CORES)' '$(B)/bin' $(SUB)

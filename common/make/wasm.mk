@@ -7,7 +7,7 @@ WASM_CC := clang --target=wasm32-wasi
 # hidden: the module exports what live.h shows, and the linker drops what nothing calls
 WASM_FLAGS := -std=c11 -D_GNU_SOURCE -O2 -ffp-contract=off -fvisibility=hidden -DXXH_INLINE_ALL -Icommon/base/wasm -I. \
   -Wall -Wextra -Wno-unknown-pragmas
-WASM_SOURCES := $(filter-out common/base/cli.c common/base/outfile.c common/base/process.c common/math/delaunay.c \
+WASM_SOURCES := $(filter-out common/base/cli.c common/base/ledger.c common/base/outfile.c common/base/process.c common/math/delaunay.c \
   stages/build_model/picture/overlay_picture.c stages/build_model/picture/view_picture.c, \
   $(wildcard $(addsuffix /*.c,$(addprefix common/,base base/wasm product math capture model light))) \
   common/texture/texture_map.c $(wildcard stages/build_model/*/*.c))

@@ -3,11 +3,13 @@
 #
 # S/log/run.txt: lines "goal GOAL", "folder O", "jobs local|slurm", "began SECONDS"; "step I N STAGE STEP SECONDS" as each step
 # begins; "ended SECONDS STATUS" at the end. SECONDS are of the clock. A run that was killed has no last line.
+# S/log/ledger.txt: what was made and given, for `make verify` (common/base/ledger.h).
 # S/log/run.tally: of the step at work, if it has several pieces: "SECONDS COUNT", and a line for each piece that is made.
 
 record_run() # GOAL
 {
-    mkdir -p "$S/log"
+    mkdir -p "$S/log/ledger"
+    export REMODEL_LEDGER=$PWD/$S/log/ledger
     printf '%s\n' "goal $1" "folder $O" "jobs $jobs" "began $(date +%s)" >"$S/log/run.txt"
     rm -f "$S/log/run.tally"
 }
@@ -20,12 +22,29 @@ begin_tally()
 }
 # recorded WORD: the last value of a word
 recorded() { sed -n "s/^$1 //p" "$S/log/run.txt" | tail -n 1; }
+# gather_ledger RESULT: after a run that is done, what people gave belongs to what was made
+gather_ledger()
+{
+    local given=() v n
+    if [ "$1" = "done" ]; then
+        given=(--given "$folder")
+        for v in $REMODEL_PASSED; do # such as SFM and LRI
+            n=REMODEL_$v
+            if [ "$v" = PHOTOS ] || [ ! -e "${!n-}" ]; then continue; fi
+            given+=(--given "${!n}")
+        done
+        if [ -e "$REMODEL_PHOTOS" ]; then given+=(--photos "$REMODEL_PHOTOS")
+        else while IFS= read -r -d '' n; do given+=(--photos "$n"); done < <(xargs printf '%s\0' <<<"$REMODEL_PHOTOS"); fi
+    fi
+    "$bin/verify" --gather --scene "$S" "${given[@]}" 2>&1 | grep -v ': used ' >&2 || true
+}
 # end_run STATUS: the record's last line; then the command of ON_DONE, which neither holds the lock nor changes how the run ended
 end_run()
 {
     local result="done"
     [ "$1" = 0 ] || result=failed
     echo "ended $(date +%s) $1" >>"$S/log/run.txt"
+    gather_ledger "$result"
     [ -n "${REMODEL_ON_DONE-}" ] || return 0
     REMODEL_SCENE=${S##*/} REMODEL_FOLDER=$O REMODEL_RESULT=$result REMODEL_SECONDS=$(($(date +%s) - $(recorded began))) \
         bash -c "$REMODEL_ON_DONE" 9>&- || echo "ON_DONE: the command ended with status $?; the run itself: $result." >&2

@@ -121,6 +121,10 @@ slices()
     [ ! -e "$folder/scene.cfg" ] || configs+=("$folder/scene.cfg")
     common/run/look.sh slices "$bin" "$1/slice" "$2" "${configs[@]}"
 }
+if [ "$goal" = verify ]; then
+    ! is_at_work || usage "A run works on scene $scene. What it makes is not yet in the ledger: wait until it ends."
+    exec "$bin/verify" --threads "$cores" --scene "$S" --run "$O"
+fi
 quality_config=("configs/$REMODEL_QUALITY.cfg")
 [ "$REMODEL_QUALITY" != default ] || quality_config=()
 

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "common/base/file_path.h"
+#include "common/base/ledger.h"
 #include "common/capture/view_image.h"
 #include "common/image/exr.h"
 #include "common/texture/view_ids.h"
@@ -70,6 +71,10 @@ static enum status replace_if_changed(const char *made, const char *path, bool *
     if (!*changed) {
         unlink(made);
         return ST_OK;
+    }
+    if (ledger_add(path, made, err)) {
+        unlink(made);
+        return err->status;
     }
     if (!rename(made, path)) return ST_OK;
     const int reason = errno;

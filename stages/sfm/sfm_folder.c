@@ -11,6 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "common/base/ledger.h"
 #include "common/base/outfile.h"
 #include "common/product/product.h"
 
@@ -97,10 +98,28 @@ static enum status write_lists(const struct sfm_folder *f, const struct photo_li
     return err->status;
 }
 
+/* The files of the folder were written below `made`; the ledger has them by the names that they will have. */
+static enum status add_to_ledger(const struct sfm_folder *f, struct err *err)
+{
+    static const char *const names[] = {"cameras.txt", "images.txt", "points3D.txt"};
+    static const enum product_id lists[] = {PRODUCT_SFM_PHOTOS, PRODUCT_SFM_MODELS};
+    char made[FILE_PATH], out[FILE_PATH];
+    for (int i = 0; i < (int)(sizeof lists / sizeof *lists); i++)
+        if (!product_path_in(made, f->made, lists[i], NULL, err) && !product_path_in(out, f->out, lists[i], NULL, err))
+            ledger_add(out, made, err);
+    for (int i = 0; !err->status && i < f->models * 3; i++) {
+        char name[64];
+        snprintf(name, sizeof name, "%d/%s", i / 3, names[i % 3]);
+        if (!file_path(made, f->made, name, "", err) && !file_path(out, f->out, name, "", err))
+            ledger_add(out, made, err);
+    }
+    return err->status;
+}
+
 enum status sfm_folder_commit(struct sfm_folder *f, const struct photo_list *photos, const struct provenance *prov,
                               struct err *err)
 {
-    write_lists(f, photos, prov, err);
+    if (!write_lists(f, photos, prov, err)) add_to_ledger(f, err);
     char *old = sfm_text_format(err, "%s/old", f->work);
     /* if there is no old folder, or the file system cannot exchange two, an old one is moved away first */
     if (!err->status && renameat2(AT_FDCWD, f->made, AT_FDCWD, f->out, RENAME_EXCHANGE) &&
