@@ -10,7 +10,7 @@
 
 #include "stages/simulate/geometry.h"
 
-#define MAX_LIGHTS 32
+#define MAX_LIGHTS 128
 
 enum light_kind { LIGHT_QUAD, LIGHT_DISK, LIGHT_WINDOW, LIGHT_SUN };
 

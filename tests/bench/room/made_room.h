@@ -16,14 +16,14 @@ enum {
     MADE_NAME = 24,
     MADE_AREAS = 2,
     MADE_WALLS = 6,
-    MADE_OPENINGS = 5,
+    MADE_OPENINGS = 24, /* a corridor has many */
     MADE_LAMPS = 2,
     MADE_PIECES = 9,
     MADE_PICTURES = 12,
     MADE_RUGS = 2,
-    MADE_PHOTOS = 26,
-    MADE_MARKS = 3, /* most marks of a thing or of a point */
-    MADE_LIT = 6,   /* most squares that a lamp lights */
+    MADE_PHOTOS = 96, /* of a room of a house; rooms alone have 20 to 26 */
+    MADE_MARKS = 3,   /* most marks of a thing or of a point */
+    MADE_LIT = 6,     /* most squares that a lamp lights */
 };
 
 /* --------------------------------------------------------------------------------------------------------- numbers */
@@ -151,6 +151,8 @@ struct made_lit {
 
 struct made_room {
     int seed;
+    char prefix[8]; /* of all names, where it is a room of a house; otherwise "" */
+    bool blank;     /* walls without a texture that features match on */
     enum made_shape shape;
     double wide, deep; /* of the rectangle around the outer walls' centre lines */
     double divide;     /* two rooms: y of the wall between them */
@@ -191,6 +193,9 @@ bool made_outline(struct made_room *r, int attempt);
 bool made_furniture(struct made_room *r, int attempt);
 bool made_pictures(struct made_room *r, int attempt);
 bool made_photos(struct made_room *r, int attempt);
+/* Photos of a rectangle: at most `wanted`, `apart` m from each other unless they look elsewhere; how many were found.
+ * They are neither in order nor need they overlap. */
+int made_photos_of_area(struct made_room *r, int wanted, double apart);
 /* The window that the edit `window` makes larger: the first, through which the sun shines. */
 void made_larger_window(struct made_room *r);
 /* Whether a place on a wall, s along it and z above the floor, is on a picture or less than `margin` from one. */
@@ -227,6 +232,13 @@ bool made_piece_near(const struct made_piece *p, double x, double y, double marg
 #define MADE_WIDTH  480
 #define MADE_HEIGHT 320
 #define MADE_FOCAL  (640.0 / 3)
+
+/* Parts of a scene; the sky needs no room. */
+void made_write_materials(const struct made_room *r, FILE *to);
+void made_write_pieces(const struct made_room *r, FILE *to);
+void made_write_pictures(const struct made_room *r, FILE *to); /* and rugs */
+void made_write_lamps(const struct made_room *r, FILE *to);
+void made_write_sky(int seed, double azimuth, double elevation, FILE *to);
 
 void made_write_scene(const struct made_room *r, FILE *to);
 void made_write_bare(const struct made_room *r, FILE *to);

@@ -35,6 +35,8 @@ struct choice {
     struct point points[POINTS];
     struct made_photo candidates[CANDIDATES];
     unsigned char sees[CANDIDATES][POINTS];
+    double apart;       /* between two cameras */
+    bool turns;         /* unless they look elsewhere */
     double north, east; /* sum of directions so far */
 };
 
@@ -133,8 +135,11 @@ static double gain_of(const struct choice *c, int k)
     const struct made_photo *photo = &c->candidates[k];
     const double *forward = photo->cam_from_world.m[2];
     double sum = 0;
-    for (int i = 0; i < c->room->photo_count; i++)
-        if (vec3_length(vec3_sub(c->room->photos[i].at, photo->at)) < APART) return 0;
+    for (int i = 0; i < c->room->photo_count; i++) {
+        const struct made_photo *other = &c->room->photos[i];
+        const bool same_way = vec3_dot(mat3_row(other->cam_from_world, 2), mat3_row(photo->cam_from_world, 2)) > 0.5;
+        if ((same_way || !c->turns) && vec3_length(vec3_sub(other->at, photo->at)) < c->apart) return 0;
+    }
     for (int i = 0; i < POINTS; i++)
         if (c->sees[k][i]) sum += 1.0 / ((1 + c->points[i].seen) * (1 + c->points[i].seen));
     return sum * (1 + 0.25 * forward[1] - 0.1 * forward[0] * (c->east > 0 ? 1 : -1));
@@ -280,15 +285,31 @@ static bool are_connected(const struct choice *c)
     return reached_count == count;
 }
 
+static void begin(struct choice *c, struct made_room *r, double apart, struct dice *d)
+{
+    memset(c, 0, sizeof *c);
+    c->room = r;
+    c->apart = apart;
+    sight_build(&c->sight, r);
+    draw_points(c, d);
+}
+
+int made_photos_of_area(struct made_room *r, int wanted, double apart)
+{
+    static struct choice c; /* too large for the stack */
+    struct dice d = dice_make(r->seed, "photos", 0);
+    begin(&c, r, apart, &d);
+    c.turns = true;
+    if (draw_candidates(&c, &d)) choose_photos(&c, wanted < MADE_PHOTOS ? wanted : MADE_PHOTOS);
+    return r->photo_count;
+}
+
 bool made_photos(struct made_room *r, int attempt)
 {
     static struct choice c; /* too large for the stack */
     struct dice d = dice_make(r->seed, "photos", attempt);
     const int wanted = (r->shape == SHAPE_RECTANGLE ? 20 : 23) + dice_choose(&d, 4);
-    memset(&c, 0, sizeof c);
-    c.room = r;
-    sight_build(&c.sight, r);
-    draw_points(&c, &d);
+    begin(&c, r, APART, &d);
     if (r->shape == SHAPE_TWO_ROOMS && !add_doorway_photos(&c)) return false;
     if (!draw_candidates(&c, &d) || !choose_photos(&c, wanted) || !face_north(&c)) return false;
     order_photos(r);
