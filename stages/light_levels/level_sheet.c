@@ -1,8 +1,9 @@
 /* level_sheet.c - see level_sheet.h.
  *
  * Intervals. The mean of an area has two errors, taken as independent and lognormal: that of the scale from the
- * photographs' unit to cd/m2 (lux_scale.h), which counts for light of the photographs alone, and that of the model, its
- * textures and the rays, [light_levels] error. The interval is 95 % of their product. Where a metre is a guess, light
+ * photographs' unit to cd/m2 (lux_scale.h), which counts for light of the photographs alone, and that of the light
+ * (level_spread.h): of lamps, sky and sun by their shares, of the model, its textures and the rays, [light_levels] error,
+ * and of skies that were not photographed, sky_error. The interval is 95 % of their product. Where a metre is a guess, light
  * of planned lamps goes with its square, and the work plane's interval holds those of planes at both ends of the guess.
  * Figures of a year are counted again in rooms that are darker and brighter by the model's error; the interval reaches
  * from the least to the most of them. The weather is taken as it is. */
@@ -16,13 +17,15 @@
 #include "common/base/log.h"
 #include "common/product/product.h"
 #include "stages/light_levels/level_plan.h"
+#include "stages/light_levels/level_spread.h"
 #include "stages/light_levels/level_year.h"
 
 /* How a state's two sums become values. */
 struct reading {
     const char *name, *unit;
     double factors[2];
-    double low, high; /* of the interval */
+    double variance[2]; /* of the logarithm, by the scale and the metre, to both sides */
+    const struct state_weights *weights;
 };
 
 static bool begin_reading(struct reading *r, const struct levels_job *j, const struct light_state *state,
@@ -30,21 +33,18 @@ static bool begin_reading(struct reading *r, const struct levels_job *j, const s
 {
     const struct lux_interval *scale = &j->scale.is;
     const bool scaled = scale->scale > 0;
-    double variance[2] = {j->params.error * j->params.error, j->params.error * j->params.error};
     if (!scaled && w->has_relative && w->has_absolute) return false;
     *r = (struct reading){
-        state->name, scaled || !w->has_relative ? "lx" : "relative", {scaled ? scale->scale : 1, 1}, 0, 0};
+        state->name, scaled || !w->has_relative ? "lx" : "relative", {scaled ? scale->scale : 1, 1}, {0, 0}, w};
     for (int k = 0; scaled && w->has_relative && k < 2; k++) {
-        const double d = log(k ? scale->high / scale->scale : scale->scale / scale->low) / LEVEL_NORMAL_95;
-        variance[k] += d * d;
+        const double d = log(k ? scale->high / scale->scale : scale->scale / scale->low) / LIGHT_NORMAL_95;
+        r->variance[k] += d * d;
     }
     const struct level_metre *metre = &j->scene.metre;
     for (int k = 0; metre->guessed && w->has_planned && k < 2; k++) {
-        const double d = 2 * log(k ? metre->high / metre->units : metre->units / metre->low) / LEVEL_NORMAL_95;
-        variance[k] += d * d;
+        const double d = 2 * log(k ? metre->high / metre->units : metre->units / metre->low) / LIGHT_NORMAL_95;
+        r->variance[k] += d * d;
     }
-    r->low = exp(-LEVEL_NORMAL_95 * sqrt(variance[0]));
-    r->high = exp(LEVEL_NORMAL_95 * sqrt(variance[1]));
     return true;
 }
 
@@ -77,15 +77,24 @@ static void widen(double ends[2], const struct levels_job *j, int area, const do
 
 static enum status add_areas(struct levels_job *j, const struct reading *r, const double *values, struct err *err)
 {
+    struct level_spread spread = {0};
+    level_spread_init(&spread, &j->errors, err);
     for (int i = 0; !err->status && i < j->sensors.area_count; i++) {
         const struct sensor_area *a = &j->sensors.areas[i];
         const double mean = mean_of(values, a);
-        double ends[2] = {r->low * mean, r->high * mean};
+        double factors[2], ends[2];
         if (is_hidden(a)) continue;
-        widen(ends, j, i, values, r->low, r->high);
-        const struct sheet_values of = {values + a->first, NULL, a->count, 0, 0, r->high > 0 ? ends : NULL};
+        level_spread_clear(&spread);
+        for (int k = 0; k < a->count; k++)
+            level_spread_add_point(&spread, &j->levels, a->first + k, &j->light.groups, r->weights, r->factors,
+                                   1.0 / a->count);
+        level_spread_ends(factors, &spread, mean, &j->errors, &j->light.groups, r->weights, &j->params, r->variance);
+        for (int k = 0; k < 2; k++) ends[k] = factors[k] * mean;
+        widen(ends, j, i, values, factors[0], factors[1]);
+        const struct sheet_values of = {values + a->first, NULL, a->count, 0, 0, ends};
         sheet_add(&j->sheet, r->name, sensor_kind_word(a->kind), a->name, r->unit, &of, err);
     }
+    level_spread_release(&spread);
     return err->status;
 }
 
@@ -101,29 +110,70 @@ static bool is_named_before(const struct light_patches *p, int patch, const char
     return false;
 }
 
+/* Patches of faces of one name, and their light. */
+struct face_values {
+    double (*sums)[2];      /* of all patches */
+    double *values, *areas; /* of this face's */
+    float *whole, *direct;  /* of one patch, by groups */
+    struct level_spread spread;
+};
+
+static void face_values_release(struct face_values *f)
+{
+    free(f->sums);
+    free(f->values);
+    free(f->whole);
+    level_spread_release(&f->spread);
+}
+
+static enum status face_values_make(struct face_values *f, const struct levels_job *j, const struct reading *r,
+                                    struct err *err)
+{
+    const size_t count = (size_t)j->light.patches.count + 1, groups = (size_t)j->errors.count + 1;
+    f->sums = malloc(count * sizeof *f->sums);
+    f->values = malloc(2 * count * sizeof *f->values);
+    f->whole = malloc(2 * groups * sizeof *f->whole);
+    if (!f->sums || !f->values || !f->whole) return err_nomem(err, "patches", count * sizeof *f->sums);
+    f->areas = f->values + count;
+    f->direct = f->whole + groups;
+    return level_spread_init(&f->spread, &j->errors, err) ? err->status
+                                                          : level_patches_sum(f->sums, &j->light, r->weights, err);
+}
+
+/* Adds a patch to a face's value and to its spread. */
+static void add_patch(struct face_values *f, const struct levels_job *j, const struct reading *r, int patch, int at)
+{
+    const double *sums = f->sums[patch], area = j->light.patches.list[patch].area;
+    struct spread_place place = {f->whole, f->direct, 0};
+    double direct[2];
+    f->values[at] = r->factors[0] * sums[0] + r->factors[1] * sums[1];
+    f->areas[at] = area;
+    level_patch_groups(f->whole, f->direct, &j->light, patch, j->errors.count);
+    level_patch_direct(direct, &j->light, patch, r->weights);
+    for (int k = 0; k < 2; k++) place.reflected += r->factors[k] * fmax(0, sums[k] - direct[k]);
+    level_spread_add(&f->spread, &place, r->weights, r->factors[0], area);
+}
+
 /* Faces of one name, such as a wall's in two rooms, are one row. */
-static enum status add_faces(struct levels_job *j, const struct reading *r, const struct state_weights *w,
-                             struct err *err)
+static enum status add_faces(struct levels_job *j, const struct reading *r, struct err *err)
 {
     const struct light_patches *p = &j->light.patches;
-    double(*sums)[2] = malloc(((size_t)p->count + 1) * sizeof *sums);
-    double *values = malloc(2 * ((size_t)p->count + 1) * sizeof *values), *areas = values ? values + p->count : NULL;
-    if (!sums || !values) err_nomem(err, "patches", (size_t)p->count * sizeof *sums);
-    if (!err->status) level_patches_sum(sums, &j->light, w, err);
+    struct face_values f = {0};
+    face_values_make(&f, j, r, err);
     for (int i = 0; !err->status && i < p->face_patches; i++) {
         const char *name = face_of_patch(p, i);
+        double sum = 0, ends[2];
         int count = 0;
         if ((i > 0 && p->list[i].face == p->list[i - 1].face) || is_named_before(p, i, name)) continue;
-        for (int k = i; k < p->face_patches; k++) {
-            if (strcmp(face_of_patch(p, k), name) != 0) continue;
-            values[count] = r->factors[0] * sums[k][0] + r->factors[1] * sums[k][1];
-            areas[count++] = p->list[k].area;
-        }
-        const struct sheet_values of = {values, areas, count, r->low, r->high, NULL};
+        level_spread_clear(&f.spread);
+        for (int k = i; k < p->face_patches; k++)
+            if (!strcmp(face_of_patch(p, k), name)) add_patch(&f, j, r, k, count++);
+        for (int k = 0; k < count; k++) sum += f.areas[k] * f.values[k];
+        level_spread_ends(ends, &f.spread, sum, &j->errors, &j->light.groups, r->weights, &j->params, r->variance);
+        const struct sheet_values of = {f.values, f.areas, count, ends[0], ends[1], NULL};
         sheet_add(&j->sheet, r->name, "face", name, r->unit, &of, err);
     }
-    free(sums);
-    free(values);
+    face_values_release(&f);
     return err->status;
 }
 
@@ -175,7 +225,7 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
                 level_points_sum(sums, &j->levels, i, &w, j->light.groups.field);
                 values[i] = r.factors[0] * sums[0] + r.factors[1] * sums[1];
             }
-            if (!add_areas(j, &r, values, err) && !add_faces(j, &r, &w, err) && !draw(j, &r, values, err))
+            if (!add_areas(j, &r, values, err) && !add_faces(j, &r, err) && !draw(j, &r, values, err))
                 draw_views(j, &r, &w, err);
             if (!err->status && number == STATE_OVERCAST) add_daylight_factor(j, &r, &w, values, err);
         }
@@ -257,7 +307,7 @@ static enum status add_year(struct levels_job *j, double *values, struct err *er
         log_warn("%s has %d of the %d hours from %d to %d o'clock; the figures of the year are those of these.",
                  j->files.weather, hours, DAYLIGHT_HOURS, DAYLIGHT_FROM, DAYLIGHT_TO);
     for (int k = 0; !err->status && k < ANNUAL; k++) {
-        const struct reading r = {annual[k].name, annual[k].unit, {0, 0}, 0, 0};
+        const struct reading r = {annual[k].name, annual[k].unit, {0, 0}, {0, 0}, NULL};
         if (!add_annual(j, k, counts, values, err) && k == 2) draw(j, &r, values, err);
     }
     free(counts);

@@ -4,8 +4,6 @@
 
 #include "stages/light_levels/levels.h"
 
-#define LEVEL_NORMAL_95 1.959964 /* standard deviations to either side of an interval */
-
 /* Writes O/lux/STATE.svg, then sheet.tsv. */
 enum status level_sheet_make(struct levels_job *j, struct err *err);
 

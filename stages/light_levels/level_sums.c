@@ -141,25 +141,33 @@ enum status level_weights_make(struct state_weights *w, const struct light_state
 
 /* ----------------------------------------------------------------------------------------------------------- points */
 
-enum status level_points_make(struct level_points *p, const struct level_light *l, const struct gather_point *points,
-                              int count, const struct levels_params *params, struct err *err)
+enum status level_points_find(struct level_points *p, float **found, const struct level_light *l,
+                              const struct gather_point *points, int count, const struct levels_params *params,
+                              struct err *err)
 {
     const struct light_groups *g = &l->groups;
     const size_t values = (size_t)count * (size_t)g->count;
     struct light_rows direct;
-    float *found;
     *p = (struct level_points){points, count, g->count, malloc((values + 1) * sizeof(float)),
                                malloc((values + 1) * sizeof(float))};
-    level_light_at(&found, &direct, l, points, count, params, err);
+    level_light_at(found, &direct, l, points, count, params, err);
     if (!err->status && (!p->whole || !p->direct)) err_nomem(err, "light at points", values * sizeof *p->whole);
     for (size_t i = 0; !err->status && i < values; i++) {
         const int group = (int)(i % (size_t)g->count);
         p->direct[i] = luminance_of(direct.direct + 3 * i);
-        p->whole[i] = luminance_of(found + 3 * i);
+        p->whole[i] = luminance_of(*found + 3 * i);
         if (group >= g->beam && group < g->planned) p->whole[i] = fmaxf(0, p->whole[i] - p->direct[i]);
     }
-    free(found);
     rows_release(&direct);
+    return err->status;
+}
+
+enum status level_points_make(struct level_points *p, const struct level_light *l, const struct gather_point *points,
+                              int count, const struct levels_params *params, struct err *err)
+{
+    float *found;
+    level_points_find(p, &found, l, points, count, params, err);
+    free(found);
     return err->status;
 }
 
@@ -214,4 +222,25 @@ enum status level_patches_sum(double (*to)[2], const struct level_light *l, cons
     }
     free(radiance);
     return ST_OK;
+}
+
+void level_patch_direct(double to[2], const struct level_light *l, int patch, const struct state_weights *w)
+{
+    sum_groups(to, l->rows.direct + 3 * (size_t)l->groups.count * (size_t)patch, w, l->groups.count);
+}
+
+void level_patch_groups(float *whole, float *direct, const struct level_light *l, int patch, int count)
+{
+    const size_t stride = 3 * (size_t)l->groups.count;
+    const struct light_row *row = &l->rows.rows[patch];
+    for (int k = 0; k < count; k++) {
+        const float *own = l->rows.direct + stride * (size_t)patch + 3 * (size_t)k;
+        double sum = 0;
+        for (int e = 0; e < row->count; e++) {
+            const float *from = l->radiosity.radiance + stride * (size_t)row->entries[e].patch + 3 * (size_t)k;
+            sum += (double)row->entries[e].share * (double)luminance_of(from);
+        }
+        direct[k] = luminance_of(own);
+        whole[k] = direct[k] + (float)(PI * sum);
+    }
 }

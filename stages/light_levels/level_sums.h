@@ -37,6 +37,10 @@ struct level_points {
 
 enum status level_points_make(struct level_points *p, const struct level_light *l, const struct gather_point *points,
                               int count, const struct levels_params *params, struct err *err);
+/* The same, and *found as level_light_at() gives it, which the caller frees. */
+enum status level_points_find(struct level_points *p, float **found, const struct level_light *l,
+                              const struct gather_point *points, int count, const struct levels_params *params,
+                              struct err *err);
 void level_points_release(struct level_points *p);
 
 /* A point's illuminance in a state: to[0] in the unit of the photographs, to[1] in lx. The sun's direct light comes
@@ -47,5 +51,10 @@ void level_points_sum(double to[2], const struct level_points *p, int point, con
 /* The same of all patches; to: of each. The sun's light is that of the beams around it. ST_NOMEM. */
 enum status level_patches_sum(double (*to)[2], const struct level_light *l, const struct state_weights *w,
                               struct err *err);
+
+/* A patch's light as it arrives directly, in a state. */
+void level_patch_direct(double to[2], const struct level_light *l, int patch, const struct state_weights *w);
+/* A patch's light by the first `count` groups, all and direct. */
+void level_patch_groups(float *whole, float *direct, const struct level_light *l, int patch, int count);
 
 #endif

@@ -1,13 +1,12 @@
 /* level_table.c - see level_table.h. */
 #include "stages/light_levels/level_table.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "common/base/scan.h"
 #include "common/light/surface_points.h"
-#include "stages/light_levels/level_sheet.h"
+#include "stages/light_levels/level_spread.h"
 
 /* {0} is the empty state; everything is owned. */
 struct given_points {
@@ -41,24 +40,46 @@ static void put_point(const struct surface_point *p)
     printf("%.9g %.9g %.9g %.9g %.9g %.9g", p->at.x, p->at.y, p->at.z, p->normal.x, p->normal.y, p->normal.z);
 }
 
+static void put_colour(const float *found, const struct light_groups *g)
+{
+    double sum[3] = {0, 0, 0};
+    for (int k = 0; k < 3 * g->patch; k++) sum[k % 3] += (double)found[k];
+    printf(" %.9g %.9g %.9g", sum[0], sum[1], sum[2]);
+}
+
+static void put_interval(struct level_spread *spread, const struct levels_job *j, const struct level_points *levels,
+                         int point, const struct state_weights *w)
+{
+    static const double factors[2] = {1, 1}, variance[2] = {0, 0};
+    const struct light_groups *g = &j->light.groups;
+    double sums[2], ends[2];
+    level_points_sum(sums, levels, point, w, NULL);
+    level_spread_clear(spread);
+    level_spread_add_point(spread, levels, point, g, w, factors, 1);
+    level_spread_ends(ends, spread, sums[0], &j->errors, g, w, &j->params, variance);
+    printf(" %.4g %.4g\n", ends[0], ends[1]);
+}
+
 enum status level_table_print(struct levels_job *j, struct err *err)
 {
     const struct light_groups *g = &j->light.groups;
-    const double high = exp(LEVEL_NORMAL_95 * j->params.error);
     struct given_points given = {.points = NULL};
-    struct light_rows direct = {0};
+    struct level_points levels = {0};
+    struct level_spread spread = {0};
+    struct state_weights w = {0};
     float *found = NULL;
-    if (!points_read(&given, j, err))
-        level_light_at(&found, &direct, &j->light, given.points, given.list.count, &j->params, err);
+    if (!points_read(&given, j, err) && !level_spread_init(&spread, &j->errors, err) &&
+        !level_weights_make(&w, &j->states.items[0], &j->states, g, &j->params, err))
+        level_points_find(&levels, &found, &j->light, given.points, given.list.count, &j->params, err);
     for (int i = 0; !err->status && i < given.list.count; i++) {
-        double sum[3] = {0, 0, 0};
-        for (int k = 0; k < 3 * g->patch; k++)
-            sum[k % 3] += (double)found[3 * (size_t)g->count * (size_t)i + (size_t)k];
         put_point(&given.list.list[i]);
-        printf(" %.9g %.9g %.9g %.4g %.4g\n", sum[0], sum[1], sum[2], 1 / high, high);
+        put_colour(found + 3 * (size_t)g->count * (size_t)i, g);
+        put_interval(&spread, j, &levels, i, &w);
     }
     free(found);
-    rows_release(&direct);
+    level_weights_release(&w);
+    level_spread_release(&spread);
+    level_points_release(&levels);
     points_release(&given);
     return err->status;
 }

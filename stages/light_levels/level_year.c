@@ -71,7 +71,8 @@ enum status level_year_count(struct daylight_point *counts, int *hours, const st
         struct hour_job j = {points, light, &w, counts, {0}};
         struct sun_position sun;
         if (record < 0) continue;
-        for (int i = 0; i < LEVEL_YEARS; i++) j.factors[i] = exp(level_year_sigmas[i] * params->error);
+        for (int i = 0; i < LEVEL_YEARS; i++)
+            j.factors[i] = exp(level_year_sigmas[i] * hypot(params->error, params->sky_error));
         memset(w.absolute, 0, size);
         sun_position_find(&sun, &weather->at, &weather->hours[record].middle);
         const struct sky_luminance sky = sky_from_weather(&weather->hours[record].sky, &sun, north, params->ground);

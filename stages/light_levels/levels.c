@@ -27,6 +27,7 @@ void levels_release(struct levels_job *j)
     lux_scale_release(&j->scale);
     weather_release(&j->weather);
     sensors_release(&j->sensors);
+    light_errors_release(&j->errors);
     level_light_release(&j->light);
     state_list_release(&j->states);
     place_list_release(&j->places);
@@ -128,7 +129,9 @@ static enum status resolve_places(struct levels_job *j, struct err *err)
 enum status levels_run(struct levels_job *j, struct err *err)
 {
     const bool hours = !j->files.points || j->files.table;
-    if (read_inputs(j, err) || resolve_places(j, err) || level_light_make(&j->light, &j->scene, hours, &j->params, err))
+    if (read_inputs(j, err) || resolve_places(j, err) ||
+        level_light_make(&j->light, &j->scene, hours, &j->params, err) ||
+        light_errors_read(&j->errors, j->files.fit, j->files.sky, &j->light.groups, &j->prov, err))
         return err->status;
     if (j->files.points) return j->files.table ? level_table_print_states(j, err) : level_table_print(j, err);
     if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, &j->scene.metre,

@@ -6,11 +6,13 @@
 #include "common/daylight/weather.h"
 #include "stages/light_levels/level_sums.h"
 #include "stages/light_levels/level_views.h"
+#include "stages/light_levels/light_errors.h"
 #include "stages/light_levels/sensors.h"
 #include "stages/light_levels/sheet.h"
 
 struct levels_files {
     struct light_change_files light;
+    const char *fit, *sky; /* how far lamps, sun and sky may be off; NULL: not at all */
     const char *plan, *places, *states, *weather, *points, *before, *scale, *day;
     bool table; /* of `points`: all states */
     struct level_view_files shown;
@@ -27,6 +29,7 @@ struct levels_job {
     struct place_list places;
     struct state_list states;
     struct level_light light;
+    struct light_errors errors;
     struct sensors sensors;
     struct level_points levels; /* of the sensors */
     struct level_views views;

@@ -18,8 +18,10 @@
       "part of the light that the panes let through, for skies other than the photographed one, which has it")        \
     X(ground, double, 0.2, 0, 1, "", "reflectance of the ground outdoors, for skies other than the photographed one") \
     X(day_sky, choice, "clear", 0, 0, "clear|partly|overcast", "sky of the film of a day without a weather file")     \
-    X(error, double, 0.2, 0, 2, "",                                                                                   \
-      "relative standard error of an illuminance by model, textures and rays, for the intervals of the sheet")        \
+    X(error, double, 0.07, 0, 2, "",                                                                                  \
+      "relative standard error of an illuminance by model, textures and rays, beside those of lamps, sky and sun")    \
+    X(sky_error, double, 0.2, 0, 2, "",                                                                               \
+      "the same of light of skies other than the photographed one: panes, ground, what stands outdoors")              \
     X(tolerance, double, 1e-4, 1e-8, 0.1, "", "part of a patch's light that the last round may change")
 
 struct levels_params {

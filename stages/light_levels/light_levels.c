@@ -3,6 +3,7 @@
  * reads   MODEL, PLAN                         the unedited model, and its rooms or those of the edit
  *         VITA/atlas.txt, page0.exr, ...      the radiance of its faces
  *         OUTDOORS, LIGHTS, REFERENCES/ID.exr what lies outside; lamps and openings
+ *         FIT, SKY                            how far lamps, sky and sun may be off
  *         THINGS/things.txt, volume.exr       furniture
  *         EDITED, MAP, OBJECTS, SCENE/FILE.obj of an edit: its model, textures and objects
  *         VIEWS/, PICTURES/VIEW.jpg           photographs, or pictures of the edit, to draw over
@@ -36,6 +37,9 @@ int main(int argc, char **argv)
         CLI_STR("vita", &light->vita, CLI_REQUIRED, "folder of the unedited view-independent atlas"),
         CLI_STR("outdoors", &light->outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
         CLI_STR("lights", &light->lights, CLI_OPTIONAL, "lamps and openings, lights.txt"),
+        CLI_STR("fit", &job.files.fit, CLI_OPTIONAL,
+                "how far the lamps may be off, fit.txt; without it, not at all, but for lower bounds"),
+        CLI_STR("sky", &job.files.sky, CLI_OPTIONAL, "how far sky and sun may be off, sky.txt; without it, not at all"),
         CLI_STR("references", &light->references, CLI_OPTIONAL,
                 "folder of the lighting reference images that openings name"),
         CLI_STR("things", &light->things, CLI_OPTIONAL,

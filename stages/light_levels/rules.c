@@ -14,7 +14,9 @@ static void say_room(struct graph *g, const struct scene_facts *f, const char *m
     rule_takes_vita(g);
     rule_takes_things(g, f);
     rule_takes(g, "--outdoors", PATH(g, OUTDOORS));
+    rule_takes(g, "--sky", PATH(g, SKY));
     rule_takes(g, "--lights", lights);
+    if (lights) rule_takes(g, "--fit", PATH(g, LIGHT_FIT));
     if (lights && rule_needs_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
 }
 

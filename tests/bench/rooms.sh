@@ -6,6 +6,8 @@
 # Samples (docs/benchmarks.md says why so many): BENCH_PHOTO_SAMPLES (8) of the photos, BENCH_EDIT_SAMPLES (16) of the true
 # picture of the edit, BENCH_LIGHT_SAMPLES (32) of the true light, which says what pixels of it count. A room takes six
 # core-minutes: two for the photos, two for depth.
+# BENCH_SIZE=small: 12 or 14 of the photos, with 288 x 192 pixels and BENCH_PHOTO_SAMPLES of 4, in out/bench/rooms-small. A
+# room takes CORE_S core-seconds.
 #
 # lamp: largest relative error of a lamp's luminance. irradiance50, irradiance90: of the truth's points (irradiance.error50,
 # error90, as fractions); lit50: irradiance50 with the true lamps, true50: with the true sky and sun, too. lamp_in of
@@ -25,7 +27,13 @@ timed=core_s
 seeds=${BENCH_SEEDS:-$(seq 1 100)}
 samples=${BENCH_EDIT_SAMPLES:-16}
 light_samples=${BENCH_LIGHT_SAMPLES:-32}
-project=$PWD/out/bench/rooms
+size=${BENCH_SIZE:-full}
+project=$PWD/out/bench/rooms small='' photo_samples=${BENCH_PHOTO_SAMPLES:-8}
+case $size in
+full) ;;
+small) project+=-small small=--small photo_samples=${BENCH_PHOTO_SAMPLES:-4} ;;
+*) echo "BENCH_SIZE=$size is unknown; give full or small." >&2; exit 2 ;;
+esac
 points=40 point_samples=1024 # of true irradiance
 
 prepare_room() { describe "$1" "$2"; } # SEED NAME
@@ -34,8 +42,8 @@ prepare_room() { describe "$1" "$2"; } # SEED NAME
 describe() # SEED NAME
 {
     rm -rf "${work:?}/$2"
-    quietly "$B/tests/bench/made_room" --seed "$1" --out "$work/$2"
-    sed -i "s/^irradiance_points = .*/irradiance_points = $points\nirradiance_samples = $point_samples/; s/^samples = .*/samples = ${BENCH_PHOTO_SAMPLES:-8}/" "$work/$2/scene.cfg"
+    quietly "$B/tests/bench/made_room" --seed "$1" $small --out "$work/$2"
+    sed -i "s/^irradiance_points = .*/irradiance_points = $points\nirradiance_samples = $point_samples/; s/^samples = .*/samples = $photo_samples/" "$work/$2/scene.cfg"
     diff -rq "$work/$2" "$project/scenes/$2" >/dev/null 2>&1 || { rm -rf "$project/scenes/$2"; cp -r "$work/$2" "$project/scenes/$2"; }
 }
 
@@ -150,7 +158,7 @@ irradiance() # SCENE
         compare_points "$fast/${in%%:*}/irradiance.txt" "$truth" "${in%%:*}50" | median
     done
     mapfile -t args < <(room_inputs "$1" "$o/lights/lights.txt" "$o/outdoors/outdoors.exr")
-    "$B/bin/light_levels" "${args[@]}" --plan "$o/model/plan.txt" --out "$fast/levels" >"$fast/levels.txt" 2>"$work/messages" || missing "light_levels failed."
+    "$B/bin/light_levels" "${args[@]}" --fit "$o/lights/fit.txt" --sky "$o/outdoors/sky.txt" --plan "$o/model/plan.txt" --out "$fast/levels" >"$fast/levels.txt" 2>"$work/messages" || missing "light_levels failed."
     compare_points "$fast/levels.txt" "$truth" irradiance in | grep irradiance_
 }
 

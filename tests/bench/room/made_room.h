@@ -153,6 +153,7 @@ struct made_room {
     int seed;
     char prefix[8]; /* of all names, where it is a room of a house; otherwise "" */
     bool blank;     /* walls without a texture that features match on */
+    double scale; /* size of the photos, of the size in cameras.txt */
     enum made_shape shape;
     double wide, deep; /* of the rectangle around the outer walls' centre lines */
     double divide;     /* two rooms: y of the wall between them */
@@ -201,6 +202,8 @@ void made_larger_window(struct made_room *r);
 /* Whether a place on a wall, s along it and z above the floor, is on a picture or less than `margin` from one. */
 bool made_on_picture(const struct made_room *r, int wall, double s, double z, double margin);
 bool made_marks(struct made_room *r);
+/* Fewer and smaller photos of a finished room, with new marks in them. */
+void made_small(struct made_room *r);
 
 /* ------------------------------------------------------------------------------------------------------------ walls */
 
@@ -229,6 +232,7 @@ bool made_piece_near(const struct made_piece *p, double x, double y, double marg
 /* ------------------------------------------------------------------------------------------------------------ texts */
 
 #define MADE_SCALE  0.5 /* size of the photos in which pixels are marked, of the size in cameras.txt */
+#define MADE_SMALL  0.3
 #define MADE_WIDTH  480
 #define MADE_HEIGHT 320
 #define MADE_FOCAL  (640.0 / 3)
