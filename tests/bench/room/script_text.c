@@ -36,6 +36,8 @@ void made_write_model(const struct made_room *r, FILE *to)
 {
     fprintf(to, "remodel-script 1\n# The shell of the room, by marks in its photos.\nset thickness %.2f\n\n",
             r->walls[0].thickness);
+    if (r->scale < MADE_SCALE) /* blank ceilings are not found in few small photos; people measure them then */
+        fprintf(to, "set ceiling %.2f\n\n", r->ceiling);
     for (int i = 0; i < r->wall_count; i++) {
         fprintf(to, "wall %s", r->walls[i].name);
         write_mark(to, &r->wall_marks[i]);
