@@ -302,22 +302,23 @@ static enum status list_surface(struct finder *f, struct err *err)
     return ST_OK;
 }
 
-/* Distances behind the model's own surfaces do not count. */
-static void leave_model(struct thing_volume *v)
+/* Distances behind the model's own surfaces do not count; known: where there are such, and where things are. */
+static void leave_model(uint8_t *known, struct thing_volume *v)
 {
-    for (size_t i = 0; i < voxel_count(&v->grid); i++)
+    for (size_t i = 0; i < voxel_count(&v->grid); i++) {
+        known[i] = v->id[i] || v->distance[i] <= 0;
         if (!v->id[i] && v->distance[i] <= 0) v->distance[i] = THING_UNSEEN;
+    }
 }
 
 /* Fills the columns below things that stand on the floor. What no view looks through is solid there, as in a visual
- * hull: the end of a bed that no view shows, legs in the dark. */
-static enum status stand(struct finder *f, struct err *err)
+ * hull: the end of a bed that no view shows, legs in the dark. The floor that views show below a table is none of it. */
+static enum status stand(struct finder *f, const uint8_t *known, struct err *err)
 {
     struct thing_volume *v = &f->volume;
     const size_t voxels = voxel_count(&v->grid), slice = (size_t)v->grid.size[0] * (size_t)v->grid.size[1];
     int *lowest = malloc(((size_t)f->count + 1) * sizeof *lowest);
-    uint8_t *before = malloc(voxels + 1);
-    if (!lowest || !before) err_nomem(err, "things", voxels);
+    if (!lowest) err_nomem(err, "things", voxels);
     for (int k = 0; !err->status && k < f->count; k++) {
         const struct thing *t = &f->things[k];
         const struct vec3 middle = vec3_scale(vec3_add(t->low, t->high), 0.5);
@@ -325,16 +326,14 @@ static enum status stand(struct finder *f, struct err *err)
         const bool stands = t->support == THING_ON_FLOOR && isfinite(below);
         lowest[k + 1] = stands ? (int)fmax(0, floor((middle.z - below - v->grid.origin.z) / v->grid.voxel)) : -1;
     }
-    for (size_t i = 0; !err->status && i < voxels; i++) before[i] = v->id[i] != 0;
     if (!err->status) components_stand(v->id, &v->grid, lowest);
     for (size_t i = voxels; !err->status && i-- > 0;) {
         const uint32_t id = v->id[i];
         if (!id || v->distance[i] != THING_UNSEEN) continue;
         const size_t above = i + slice; /* it is done already; what grew below a surface is solid, too */
         const bool goes_on = above < voxels && v->id[above] == id && v->distance[above] <= 0;
-        if (!before[i] || (goes_on && lowest[id] >= 0 && (int)(i / slice) >= lowest[id])) v->distance[i] = -1;
+        if (!known[i] || (goes_on && lowest[id] >= 0 && (int)(i / slice) >= lowest[id])) v->distance[i] = -1;
     }
-    free(before);
     free(lowest);
     return err->status;
 }
@@ -345,8 +344,12 @@ static enum status grow(struct finder *f, struct err *err)
     struct thing_volume *v = &f->volume;
     const int margin = (int)ceil(f->job->params->margin * f->height / v->grid.voxel);
     if (components_grow(v->id, &v->grid, SURFACE_STEPS, err)) return err->status;
-    leave_model(v);
-    if (stand(f, err)) return err->status;
+    uint8_t *known = malloc(voxel_count(&v->grid) + 1);
+    if (!known) return err_nomem(err, "things", voxel_count(&v->grid));
+    leave_model(known, v);
+    stand(f, known, err);
+    free(known);
+    if (err->status) return err->status;
     components_grow(v->id, &v->grid, margin > SURFACE_STEPS ? margin - SURFACE_STEPS : 1, err);
     for (size_t i = 0; i < voxel_count(&v->grid); i++)
         if (!v->id[i]) v->distance[i] = THING_UNSEEN;

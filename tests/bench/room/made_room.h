@@ -136,6 +136,11 @@ struct made_mark {
     int photo;
     double x0, y0, x1, y1;
 };
+/* Two pixels of the line where a wall meets the floor or the ceiling. */
+struct made_line {
+    bool is, top;
+    struct made_mark mark;
+};
 struct made_marks {
     struct made_mark list[MADE_MARKS];
     int count;
@@ -184,6 +189,7 @@ struct made_room {
     int photo_count;
 
     struct made_mark wall_marks[MADE_WALLS], opening_marks[MADE_OPENINGS];
+    struct made_line wall_lines[MADE_WALLS];    /* of small photos, instead of these marks where `is` */
     struct made_mark lamp_marks[MADE_LAMPS][2]; /* x0 y0 x1 y1: two corners each, in order; photo -1: none */
     struct made_marks cleared_marks, moved_marks, picture_marks[MADE_PICTURES];
     struct made_lit lit[MADE_LAMPS];

@@ -39,8 +39,9 @@ void made_write_model(const struct made_room *r, FILE *to)
     if (r->scale < MADE_SCALE) /* blank ceilings are not found in few small photos; people measure them then */
         fprintf(to, "set ceiling %.2f\n\n", r->ceiling);
     for (int i = 0; i < r->wall_count; i++) {
-        fprintf(to, "wall %s", r->walls[i].name);
-        write_mark(to, &r->wall_marks[i]);
+        const struct made_line *line = &r->wall_lines[i];
+        fprintf(to, line->is ? "wall %s %s" : "wall %s", r->walls[i].name, line->top ? "top" : "foot");
+        write_mark(to, line->is ? &line->mark : &r->wall_marks[i]);
         if (r->walls[i].thickness < r->walls[0].thickness) fprintf(to, " thickness %.2f", r->walls[i].thickness);
         fputs("\n", to);
     }

@@ -7,10 +7,13 @@
 
 #include "tests/bench/room/sight.h"
 
-enum { FEWEST = 12, FEWEST_OF_TWO = 14, POINTS = 900, TRIES = 40 };
+enum { FEWEST = 12, FEWEST_OF_TWO = 14, POINTS = 900, TRIES = 40, STEPS = 16 };
 #define NEAREST  0.4 /* what a photo shows: distances, m */
 #define FARTHEST 6.0
 #define SLANT    0.2  /* least cosine between the view and a surface's normal */
+#define OFF      0.02 /* m before wall and floor, where a line must be seen */
+#define EDGE     8    /* px between a mark and the edge of the photo */
+#define SHORTEST 40   /* px of a line */
 #define AHEAD    0.85 /* least part of the central photo's direction that is north */
 
 struct shown {
@@ -134,6 +137,7 @@ static void shrink_marks(struct made_room *r, double by)
 {
     shrink(r->wall_marks, r->wall_count, by);
     shrink(r->opening_marks, r->opening_count, by);
+    for (int i = 0; i < r->wall_count; i++) shrink(&r->wall_lines[i].mark, 1, by);
     for (int i = 0; i < r->lamp_count; i++) {
         shrink(r->lamp_marks[i], 2, by);
         shrink(r->lit[i].list, r->lit[i].count, by);
@@ -141,6 +145,50 @@ static void shrink_marks(struct made_room *r, double by)
     shrink(r->cleared_marks.list, r->cleared_marks.count, by);
     shrink(r->moved_marks.list, r->moved_marks.count, by);
     for (int i = 0; i < r->picture_count; i++) shrink(r->picture_marks[i].list, r->picture_marks[i].count, by);
+}
+
+/* ---------------------------------------------------------------------------------------------------------- marks */
+
+/* The pixel of a place where a wall's inside meets the floor or the ceiling; false: it is not seen. */
+static bool mark_place(double *u, double *v, const struct made_room *r, const struct sight *s,
+                       const struct made_photo *photo, const struct made_wall *w, double along, bool top)
+{
+    struct vec3 p = made_wall_place(w, along, w->thickness / 2);
+    p.z = top ? r->ceiling : 0;
+    struct vec3 before = vec3_add(p, vec3_scale(made_wall_normal(w), OFF));
+    before.z += top ? -OFF : OFF;
+    return photo_project(photo, p, EDGE, u, v) && sight_clear(s, photo->at, before);
+}
+
+/* The longest line, in pixels, that a photo shows both ends of. Few small photos give blank walls too few points for a
+ * rectangle. */
+static struct made_line longest_line(const struct made_room *r, const struct sight *s, const struct made_wall *w)
+{
+    const double length = made_wall_length(w), inset = 0.25;
+    struct made_line best = {.is = false};
+    double most = 0;
+    for (int k = 0; k < 2 * r->photo_count; k++) {
+        double u[STEPS + 1], v[STEPS + 1];
+        bool seen[STEPS + 1];
+        for (int i = 0; i <= STEPS; i++)
+            seen[i] =
+                mark_place(&u[i], &v[i], r, s, &r->photos[k / 2], w, inset + (length - 2 * inset) * i / STEPS, k % 2);
+        for (int a = 0; a < STEPS; a++)
+            for (int b = a + 1; b <= STEPS; b++) {
+                const double pixels = hypot(u[b] - u[a], v[b] - v[a]);
+                if (!seen[a] || !seen[b] || pixels <= most) continue;
+                most = pixels;
+                best = (struct made_line){most > SHORTEST, k % 2, {k / 2, u[a], v[a], u[b], v[b]}};
+            }
+    }
+    return best;
+}
+
+static void mark_lines(struct made_room *r)
+{
+    struct sight s;
+    sight_build(&s, r);
+    for (int i = 0; i < r->wall_count; i++) r->wall_lines[i] = longest_line(r, &s, &r->walls[i]);
 }
 
 /* Lamps that are marked in all photos, and in fewer. */
@@ -163,6 +211,7 @@ void made_small(struct made_room *r)
         marked = made_marks(r) && keeps_lamps(&all, r);
     }
     if (!marked) *r = all;
+    mark_lines(r);
     r->scale = MADE_SMALL;
     shrink_marks(r, r->scale / MADE_SCALE);
 }
