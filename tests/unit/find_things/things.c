@@ -6,14 +6,16 @@
 #include "common/image/image.h"
 #include "common/layers/layered_depth.h"
 #include "common/model/thing_mask.h"
+#include "common/model/thing_mesh.h"
 #include "common/product/product.h"
 #include "common/texture/view_ids.h"
 #include "tests/unit/box_solids.h"
 
-enum { W = 120, H = 90, VIEWS = 4, ROOM_FACES = 6 };
+enum { W = 120, H = 90, VIEWS = 4, ROOM_FACES = 12 };
 
 /* Its legs are too thin to be seen. */
 static const struct box scene[] = {{"walls", "in", {-2, -2, 0}, {2, 2, 2.5}, true},
+                                   {"walls", "slab", {-2, -2, -0.15}, {2, 2, -0.01}, false},
                                    {"walls", "table", {-0.5, -0.4, 0.5}, {0.5, 0.4, 0.6}, false}};
 static const struct model_axes same_frame = {.rotation = {1, 0, 0, 0}, .scale = 1};
 static const struct provenance no_inputs = {.stage = "test", .version = "1"};
@@ -122,7 +124,7 @@ static int find(void **state)
     const struct scene_inputs in = {.set = {.views = views, .view_count = VIEWS}, .axes = same_frame};
     const struct thing_marks marks = rug_marks();
     struct things_params params = THINGS_PARAMS_DEFAULT;
-    struct model_rays room = make_rays(scene, 1), whole = make_rays(scene, 2);
+    struct model_rays room = make_rays(scene, 2), whole = make_rays(scene, 3);
     struct provenance prov = {.stage = "find_things", .version = "1"};
     struct err err = ERR_INIT;
     if (scratch_make(state)) return -1;
@@ -209,6 +211,31 @@ static void what_a_view_looks_through_below_it_is_not_solid(void **state)
     }
 }
 
+/* The area of its surface between two heights that looks up. */
+static double area_that_looks_up(const struct thing_mesh *m, double low, double high)
+{
+    double area = 0;
+    for (int i = 0; i < m->triangle_count; i++) {
+        const struct vec3 a = m->vertices[m->triangles[i][0]], b = m->vertices[m->triangles[i][1]],
+                          c = m->vertices[m->triangles[i][2]];
+        const struct vec3 normal = vec3_cross(vec3_sub(b, a), vec3_sub(c, a));
+        if (a.z > low && a.z < high && normal.z > 0.7 * vec3_length(normal)) area += vec3_length(normal) / 2;
+    }
+    return area;
+}
+
+/* It would send out the light of the table's top. */
+static void the_floor_that_views_show_below_it_is_not_its_surface(void **state)
+{
+    struct thing_mesh m;
+    struct err err = ERR_INIT;
+    (void)state;
+    assert_ok(thing_mesh_make(&m, &volume, 1, &err), err);
+    const double top = area_that_looks_up(&m, 0.5, 0.7), floor = area_that_looks_up(&m, -0.1, 0.1);
+    if (!(fabs(top - 0.8) < 0.1 && floor < 1e-3)) fail_msg("%.4f m2 of the top look up, %.4f at the floor", top, floor);
+    thing_mesh_release(&m);
+}
+
 static void beside_it_and_above_it_there_is_nothing(void **state)
 {
     (void)state;
@@ -261,6 +288,7 @@ int main(void)
         cmocka_unit_test(its_radiance_is_that_of_its_pixels),
         cmocka_unit_test(what_no_view_looks_through_below_it_is_solid),
         cmocka_unit_test(what_a_view_looks_through_below_it_is_not_solid),
+        cmocka_unit_test(the_floor_that_views_show_below_it_is_not_its_surface),
         cmocka_unit_test(beside_it_and_above_it_there_is_nothing),
         cmocka_unit_test(a_rug_lies_where_its_outline_was_drawn),
         cmocka_unit_test(a_view_shows_the_rug_where_nothing_is_before_it),
