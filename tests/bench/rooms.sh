@@ -7,7 +7,7 @@
 # picture of the edit, BENCH_LIGHT_SAMPLES (32) of the true light, which says what pixels of it count. A room takes six
 # core-minutes: two for the photos, two for depth.
 # BENCH_SIZE=small: 12 or 14 of the photos, with 288 x 192 pixels and BENCH_PHOTO_SAMPLES of 4, in out/bench/rooms-small. A
-# room takes CORE_S core-seconds.
+# room takes 80 to 95 core-seconds (docs/benchmarks.md says how its figures compare).
 #
 # lamp: largest relative error of a lamp's luminance. irradiance50, irradiance90: of the truth's points (irradiance.error50,
 # error90, as fractions); lit50: irradiance50 with the true lamps, true50: with the true sky and sun, too. lamp_in of
