@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # generate.sh BIN 'STAGE...' FOLDER - the files that come from the stages and the table of products: FOLDER/docs/man/STAGE.1,
-# FOLDER/configs/default.cfg, the table of stages in FOLDER/docs/architecture.md, the table of products in FOLDER/docs/formats.md. A test compares the committed files with them (tests/lint/tree.sh).
+# FOLDER/configs/default.cfg, the table of stages in FOLDER/docs/architecture.md, the table of products in FOLDER/docs/formats.md,
+# the tables of metrics in FOLDER/docs/evaluation.md. A test compares the committed files with them (tests/lint/tree.sh).
 set -euo pipefail
 bin=$1 stages=$2 folder=$3
 
@@ -56,3 +57,4 @@ awk -F'\t' '
         gsub(/\|/, "`, `", $3); gsub(/\*/, "...", $3)
         printf "| %s | %s | %s |\n", $2, $3 == "#" ? "a number" : $3 == "..." ? "a name" : "`" $3 "`", $4
     }' <<<"$products" | fill products docs/formats.md
+awk -f common/run/metric_tables.awk common/base/metric_kinds.def docs/evaluation.md | put "$folder/docs/evaluation.md"

@@ -4,7 +4,8 @@
 # out/bench/vdta/SCALE, which that bench makes first if they are not there (long). Added to the truth: the witnesses, and
 # each edit from four photos and the witnesses at 64 samples. Rows, each timed:
 #   edit E          the views of these photos after edit E of scenes/SCENE/edits; psnr: over what the edit reveals, after one
-#                   gain for each face (edited.E.revealed_psnr)
+#                   gain for each face (edited.E.revealed_psnr); revealed_things_psnr: the part of it that is furniture
+#                   in truth, such as what stands behind a removed wall, or a thing that was moved
 #   with clutter    the witnesses, which stand between the photos' places; psnr: novel.psnr
 #   shell alone     the same without furniture
 #   render_views    the same from the photos' layers alone
@@ -42,6 +43,8 @@ shown() # EDIT CAMERA
 {
     local to=$kept/room/truth/${1:+edited-$1}
     [ -n "$1" ] || to=$kept/room/truth/novel
+    # its faces, of which some are furniture
+    [ -z "$1" ] || [ -e "$to/faces.txt" ] || simulated --scene "$described" --out "$kept/room" --edit "$1" --common
     [ -e "$to/hdr/$2.exr" ] || simulated --scene "$described" --out "$kept/room" ${1:+--edit "$1"} --photo "$2" --set "samples=$edit_samples" --set "truth_samples=$edit_samples"
 }
 true_cameras() # PRODUCTS SHARED TRUTH TO
@@ -103,6 +106,6 @@ sample() # SERIES SCENE
         FNR == NR { split($0, t, " "); time[t[1]] = t[2]; next }
         index($1, of) != 1 { next }
         { name = substr($1, length(of) + 1) }
-        name == "ssim" || name == "revealed" || name == "pictures" { printf "%s %.5g\n", name, $2 }
+        name ~ /^(ssim|revealed|revealed_things|revealed_things_psnr|pictures)$/ { printf "%s %.5g\n", name, $2 }
         name == psnr { printf "psnr %.5g\ncore_s_per_mp %.4g\n", $2, time["cpu_seconds"] / mp }' "$fast/time" "$fast/row/metrics.tsv"
 }

@@ -10,7 +10,8 @@
 #             made_room marks plain walls that the lamps light, and nothing that they do not.
 #
 # psnr: over all pixels (edited.E.psnr). revealed_psnr: over what the edit reveals or puts elsewhere, after one gain for each
-# face (edited.E.revealed_psnr); revealed: these pixels, % of all. walls: the largest error of a wall of the unedited model, m.
+# face (edited.E.revealed_psnr); revealed: these pixels, % of all. revealed_things_psnr: those of them that show furniture.
+# walls: the largest error of a wall of the unedited model, m.
 title="Cleared and moved furniture in rooms that a seed decides"
 note="Higher is better. Over all pixels, against the part of them that the edit reveals."
 repeats=1 # pictures repeat exactly
@@ -66,6 +67,8 @@ describe() # SEED NAME
 shown() # SCENE EDIT PHOTO
 {
     local from=$project/scenes/$1 to=$project/out/$1/simulated f
+    f=$to/truth/edited-$2/faces.txt # which of them are furniture
+    [ "$f" -nt "$from/scene-$2.txt" ] || quietly "$B/bin/simulate" --config "$from/scene.cfg" --scene "$from" --out "$to" --edit "$2" --common
     f=$to/truth/edited-$2/hdr/$3.exr
     [ "$f" -nt "$from/scene.txt" ] && [ "$f" -nt "$from/scene-$2.txt" ] && [ "$f" -nt "$from/cameras.txt" ] && return
     say "simulate $1 $2 $3"
@@ -100,5 +103,5 @@ sample() # SERIES SCENE LIGHT
     grep -E '^(seconds|peak_mib) ' "$fast/time"
     awk -F'\t' -v of="edited.$e." '
         $1 == "model.walls" { printf "walls %.3g\n", $2 }
-        index($1, of) == 1 { name = substr($1, length(of) + 1); if (name ~ /^(psnr|ssim|revealed|revealed_psnr|pictures)$/) printf "%s %.5g\n", name, $2 }' "$fast/row/metrics.tsv"
+        index($1, of) == 1 { name = substr($1, length(of) + 1); if (name ~ /^(psnr|ssim|revealed|revealed_psnr|revealed_things|revealed_things_psnr|pictures)$/) printf "%s %.5g\n", name, $2 }' "$fast/row/metrics.tsv"
 }
