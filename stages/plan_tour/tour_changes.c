@@ -12,6 +12,7 @@
 
 static const double BEFORE = 0.1; /* of the room's height: how far before a part its room is looked for */
 static const double BESIDE = 0.2; /* the same: how far beside the room's outline a part may be, as a window's sill is */
+static const double PART_BEFORE = 0.01; /* the same: where one sees a part */
 
 struct sums {
     struct tour_change *list; /* one for each room; places are sums */
@@ -41,19 +42,37 @@ static void add_to(struct sums *s, int room, struct vec3 p, double weight)
     s->list[room].weight += weight;
 }
 
+/* Keeps the largest parts. */
+static void add_part(struct tour_change *c, struct vec3 p, double weight)
+{
+    int at = c->part_count < TOUR_PARTS ? c->part_count++ : TOUR_PARTS;
+    for (; at > 0 && c->part_weights[at - 1] < weight; at--)
+        if (at < TOUR_PARTS) {
+            c->parts[at] = c->parts[at - 1];
+            c->part_weights[at] = c->part_weights[at - 1];
+        }
+    if (at == TOUR_PARTS) return;
+    c->parts[at] = p;
+    c->part_weights[at] = weight;
+}
+
+/* normal: of a face that changed; 0: something else did. */
 static void add(struct sums *s, struct vec3 p, struct vec3 normal, double weight)
 {
     double least = INFINITY;
     int nearest = -1;
+    double before = 0;
     for (int r = 0; r < s->plan->room_count; r++) {
         const struct model_room *room = &s->plan->rooms[r];
         const double height = model_room_ceiling(room, p.x, p.y) - room->floor;
         const double d = distance_to(room, vec3_add(p, vec3_scale(normal, BEFORE * height)));
         if (d <= BESIDE * height && d < least && p.z < room->floor + (1 + BEFORE) * height &&
             p.z > room->floor - BEFORE * height)
-            least = d, nearest = r;
+            least = d, nearest = r, before = PART_BEFORE * height;
     }
-    if (nearest >= 0) add_to(s, nearest, p, weight);
+    if (nearest < 0) return;
+    add_to(s, nearest, p, weight);
+    if (vec3_length(normal) > 0) add_part(&s->list[nearest], vec3_add(p, vec3_scale(normal, before)), weight);
 }
 
 static void add_face(struct sums *s, const struct texture_face *f)

@@ -6,10 +6,17 @@
 #include "common/model/thing_list.h"
 #include "common/texture/texture_map.h"
 
+enum { TOUR_PARTS = 8 };
+
 struct tour_change {
     int room;          /* index into the plan's rooms */
     struct vec3 place; /* the middle of what changed there, model frame */
     double weight;     /* how much: square model units */
+    /* Places a little before the largest faces that changed, by which one sees the change: the middle of a new box or
+     * wall is inside it. The largest first; none: only the middle counts. */
+    struct vec3 parts[TOUR_PARTS];
+    double part_weights[TOUR_PARTS];
+    int part_count;
 };
 
 /* *changes: malloc'ed, the largest first. things (may be NULL): where the things of the map are. ST_NOMEM. */
