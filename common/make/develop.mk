@@ -35,7 +35,7 @@ sequences: deps-check ## SEQUENCES=N (10000) random model scripts and edits; eac
 	+@SEQUENCES='$(or $(SEQUENCES),10000)' $(B)/tests/unit/build_model/sequences
 fuzz: deps-check ## look for new inputs that break a parser: FUZZ=NAME FUZZ_SECONDS=60
 	+@tests/fuzz/fuzz.sh '$(FUZZ)' '$(or $(FUZZ_SECONDS),60)'
-generated: ## the files that come from the stages: docs/man, configs/default.cfg, the tables of docs/architecture.md docs/formats.md and docs/evaluation.md
+generated: ## the files that come from the stages: docs/man, configs/default.cfg, the tables of docs/architecture.md, docs/formats.md and docs/evaluation.md
 	+@$(BUILD) build
 	@common/run/generate.sh '$(B)/bin' '$(STAGES)' .
 ## PREFIX=DIR DESTDIR=DIR: of make install: the folder it is used from (/usr/local), and one that all paths are put under, for packages

@@ -272,7 +272,7 @@ enum status clutter_draw_thing(struct model_picture *p, float *front, const stru
     struct thing_rows drawn;
     if (!prepare_thing(&layer, &choice, p, s, &scene_camera, thing->points, max_views(s), prov, err) &&
         (thing->outline->count || !clutter_blend(&layer, front, s, &choice, &scene_camera, &filter, err)))
-        thing_surface_draw(&drawn, &layer, front, s, &choice, &scene_camera, thing);
+        thing_surface_draw(&drawn, &layer, front, s, &choice, &scene_camera, thing, err);
     if (!err->status && pixels->stays) leave_pixels(&layer, pixels->stays, count);
     for (size_t i = 0; !err->status && i < count; i++) {
         layer.doubt[i] = 0; /* what is not drawn of a thing is not there: the shell is sure */
@@ -296,10 +296,10 @@ enum status clutter_draw_surface(struct model_picture *p, float *front, struct c
     if (!prepare_thing(&layer, &choice, p, s, &scene_camera, thing->points, most, prov, err)) {
         for (size_t i = 0; i < count; i++)
             if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 1;
-        thing_surface_draw(&rows, &layer, front, s, &choice, &scene_camera, thing);
+        thing_surface_draw(&rows, &layer, front, s, &choice, &scene_camera, thing, err);
         for (size_t i = 0; i < count; i++)
             if (p->made[i] == MADE_CLUTTER) layer.rgba[4 * i + 3] = 0;
-        lay(p, front, &layer, NULL, s->axes.scale, rows);
+        if (!err->status) lay(p, front, &layer, NULL, s->axes.scale, rows);
     }
     clutter_layer_release(&layer);
     return err->status;

@@ -30,8 +30,7 @@ double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view)
     return chord + FAR_FEE * fmax(0, lb / la - 1);
 }
 
-/* Whether the unedited model hides a point from a place; both in the scene's frame. Panes hide nothing. */
-static bool is_hidden(const struct clutter_scene *s, struct vec3 from, struct vec3 point)
+bool clutter_is_hidden(const struct clutter_scene *s, struct vec3 from, struct vec3 point)
 {
     struct ray_hit hit;
     if (!s->walls) return false;
@@ -60,7 +59,7 @@ static void vote(double *score, double *weight, const struct clutter_scene *s, s
         weight[i] = 0;
         if (!(view_project(view, point, &u, &v) > 0) || !(u >= 0 && v >= 0 && u < view->width && v < view->height))
             continue;
-        if (is_hidden(s, view->center, point)) continue;
+        if (clutter_is_hidden(s, view->center, point)) continue;
         const double penalty = clutter_penalty(point, camera, view->center);
         weight[i] = 1 / pow(SHARPNESS + penalty * penalty, 2);
         sum += weight[i];

@@ -46,6 +46,9 @@ enum status clutter_choose_for(struct clutter_choice *choice, const struct clutt
 enum status clutter_choose(struct clutter_choice *choice, const struct clutter_scene *s, const struct view *camera,
                            const float *z, double scale, int most, struct err *err);
 
+/* Whether the unedited model hides a point from a place; both in the scene's frame. Panes hide nothing. */
+bool clutter_is_hidden(const struct clutter_scene *s, struct vec3 from, struct vec3 point);
+
 /* How much worse a view shows the point than the camera's own place would: the angle between the two rays, in radians
  * while it is small (the chord of the unit circle), with a fee for distance. */
 double clutter_penalty(struct vec3 point, struct vec3 camera, struct vec3 view);

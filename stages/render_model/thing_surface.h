@@ -12,8 +12,8 @@ struct thing_rows {
 /* Draws the surface of a thing under what a layer has of it: every pixel whose ray meets the surface becomes covered,
  * at the rim of what lies flat in part; *rows: no others were. shell: as of clutter_blend(). camera: scene frame; the
  * views of the choice are loaded. Same bits for any number of threads. */
-void thing_surface_draw(struct thing_rows *rows, struct clutter_layer *layer, const float *shell,
-                        const struct clutter_scene *scene, const struct clutter_choice *choice,
-                        const struct view *camera, const struct thing_shape *thing);
+enum status thing_surface_draw(struct thing_rows *rows, struct clutter_layer *layer, const float *shell,
+                               const struct clutter_scene *scene, const struct clutter_choice *choice,
+                               const struct view *camera, const struct thing_shape *thing, struct err *err);
 
 #endif
