@@ -350,10 +350,7 @@ static enum status grow(struct finder *f, struct err *err)
     stand(f, known, err);
     free(known);
     if (err->status) return err->status;
-    components_grow(v->id, &v->grid, margin > SURFACE_STEPS ? margin - SURFACE_STEPS : 1, err);
-    for (size_t i = 0; i < voxel_count(&v->grid); i++)
-        if (!v->id[i]) v->distance[i] = THING_UNSEEN;
-    return err->status;
+    return components_grow(v->id, &v->grid, margin > SURFACE_STEPS ? margin - SURFACE_STEPS : 1, err);
 }
 
 /* Adds what lies flat on faces, as the last of the things. */

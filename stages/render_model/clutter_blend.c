@@ -56,6 +56,7 @@
 #define WIDTHS     8.0f    /* of the soft z-buffer, in uncertainties */
 #define MAX_SLACK  0.03    /* of the depth */
 #define SELF       2.5     /* voxels before a thing's surface, of more than what is thin */
+#define THROUGH    2.5     /* voxels: the most that a thing may be behind the shell */
 #define SOLID      (-0.2f) /* distance, in bands, of what is surely within a thing */
 #define TOGETHER   0.004f  /* relative difference of depths */
 
@@ -159,7 +160,10 @@ static bool is_behind_itself(const struct blend_job *job, struct vec3 p)
 /* What the shell, and the filter, leave of a fragment. */
 static float left_by_shell(const struct blend_job *job, const struct fragment *f, float shell)
 {
-    const double spare = HIDDEN + slack(f->sigma), over = shell > 0 ? (double)f->z / (double)shell - 1 : 0;
+    double spare = HIDDEN + slack(f->sigma);
+    if (job->filter->only && shell > 0) /* one thing: what stands behind a wall does not show through it */
+        spare = fmin(spare, THROUGH * job->filter->volume->grid.voxel * job->scale / (double)shell);
+    const double over = shell > 0 ? (double)f->z / (double)shell - 1 : 0;
     const float left = over > spare ? 1 - smooth((over - spare) / spare) : 1;
     if (!(left > 0) || !job->filters) return left;
     const struct vec3 p = model_from_world_point(&job->scene->axes, f->point);

@@ -23,6 +23,7 @@ struct hull_job {
     struct thing_hull *hull;
     const struct clutter_scene *scene;
     const struct clutter_choice *choice;
+    const struct thing_volume *volume;
     uint32_t thing;
 };
 
@@ -50,12 +51,23 @@ static bool is_solid(const struct hull_job *job, struct vec3 model)
     return hidden > OUTVOTES * past && !clutter_is_hidden(job->scene, job->scene->set->views[hides].center, p);
 }
 
+/* Whether no view of the scene looked through a place, and no other thing is there. */
+static bool may_be_solid(const struct hull_job *job, struct vec3 p)
+{
+    const struct thing_volume *v = job->volume;
+    const int64_t at = thing_voxel_at(&v->grid, p);
+    if (at < 0 || (v->id[at] && v->id[at] != job->thing)) return false;
+    return v->distance[at] == THING_UNSEEN || v->distance[at] <= 0;
+}
+
 static void find_voxels(void *ctx, size_t begin, size_t end, int thread)
 {
     const struct hull_job *job = ctx;
     (void)thread;
-    for (size_t i = begin; i < end; i++)
-        job->hull->solid[i] = is_solid(job, thing_voxel_centre(&job->hull->grid, (int64_t)i));
+    for (size_t i = begin; i < end; i++) {
+        const struct vec3 p = thing_voxel_centre(&job->hull->grid, (int64_t)i);
+        job->hull->solid[i] = may_be_solid(job, p) && is_solid(job, p);
+    }
 }
 
 enum status thing_hull_find(struct thing_hull *hull, const struct clutter_scene *scene,
@@ -70,7 +82,7 @@ enum status thing_hull_find(struct thing_hull *hull, const struct clutter_scene 
     for (int k = 0; k < 3; k++) hull->grid.size[k] = (int)ceil(sides[k] / g->voxel);
     const size_t voxels = voxel_count(&hull->grid);
     if (!(hull->solid = malloc(voxels))) return err_nomem(err, "the hull of a thing", voxels);
-    struct hull_job job = {hull, scene, choice, thing->id};
+    struct hull_job job = {hull, scene, choice, thing->volume, thing->id};
     parallel_for(voxels, 256, find_voxels, &job);
     return ST_OK;
 }

@@ -4,8 +4,11 @@
  * The place P takes its colour from the views that see it: those whose nearest surface is at P, weighted as in
  * unstructured lumigraph rendering [Buehler 2001] by the angle between their ray and the camera's. A view that sees
  * past P, to the floor, but shows the thing there counts where none sees P: a leg is thinner than its segments. If P is
- * hidden from all of them, those count that show clutter at its pixel, unless it is another thing; it is near P. From
- * behind the surface no view counts: the back of a bookcase that nobody saw is not drawn.
+ * hidden from all of them, P takes the mean colour of the places around it, at its height, that some view sees; without
+ * any, those views count that look past P, or show clutter at its pixel, unless it is another thing. From behind the
+ * surface no view counts.
+ *
+ * What no view looks into ends where the hull does (thing_hull.c): the side of a bookcase at a wall.
  *
  * What lies flat is not met in voxels, whose steps would show at its rim, but in the plane of its outline. A pixel at
  * the rim is covered by the share of rays through it that meet the outline. */
@@ -29,12 +32,13 @@
 #define ELSEWHERE   1e-3  /* the same of a view from which P is hidden */
 #define FLAT_BEHIND 0.01f /* the same of what lies flat, in a plane that is known */
 #define MAX_BEHIND  0.05f /* of the depth: what the shell may be in front of the surface without hiding it */
+#define THROUGH     2.5   /* the same in voxels: what stands behind a wall does not show through it */
 #define ON_SURFACE  0.4f  /* bands: a place this near to the surface is on it */
 #define BORROW_BLUR 4.0   /* voxels: places as near as that count alike */
 
-enum { HULL_STEPS = 2 };    /* within the hull, which tell that a ray meets it */
-enum { RIM_RAYS = 4 };      /* across a pixel, and down */
-enum { BORROW_SLICES = 1 }; /* of voxels above and below a place that no view sees */
+enum { HULL_STEPS = 2 };     /* within the hull, which tell that a ray meets it */
+enum { RIM_RAYS = 4 };       /* across a pixel, and down */
+enum { BORROW_SLICES = 16 }; /* voxels above and below a place that no view sees, at most */
 
 struct seen_place {
     struct vec3 at; /* model frame */
@@ -170,7 +174,7 @@ static enum status list_seen(struct seen_places *seen, const struct surface_job 
     const struct thing_volume *v = job->volume;
     const struct voxel_grid *g = &v->grid;
     const int64_t slice = (int64_t)g->size[0] * g->size[1];
-    const struct vec3 none = {0, 0, 0}, low = job->thing->points->low, high = job->thing->points->high;
+    const struct vec3 low = job->thing->points->low, high = job->thing->points->high;
     seen->first = calloc((size_t)g->size[2] + 1, sizeof *seen->first);
     if (!seen->first) return err_nomem(err, "places of a thing", (size_t)g->size[2] * sizeof *seen->first);
     const struct vec3 from = vec3_scale(vec3_sub(low, g->origin), 1 / g->voxel),
@@ -184,7 +188,8 @@ static enum status list_seen(struct seen_places *seen, const struct surface_job 
                 double sum[4] = {0};
                 if (v->id[at] != job->thing->id || !(fabsf(v->distance[at]) < ON_SURFACE)) continue;
                 const struct vec3 centre = thing_voxel_centre(g, at);
-                if (!add_colours(sum, job, world_from_model_point(&job->scene->axes, centre), none, 1)) continue;
+                const struct vec3 normal = thing_volume_normal(v, job->thing->id, centre);
+                if (!add_colours(sum, job, world_from_model_point(&job->scene->axes, centre), normal, 1)) continue;
                 if (array_append(&seen->list, (size_t)seen->count, sizeof *seen->list, "places of a thing", err))
                     return err->status;
                 seen->list[seen->count++] = (struct seen_place){
@@ -195,14 +200,12 @@ static enum status list_seen(struct seen_places *seen, const struct surface_job 
     return ST_OK;
 }
 
-/* The mean colour of the places around P that a view sees, at about its height: furniture is made of boards and sides,
- * whose colours change with the height more than along it. p: in the model's frame. */
-static bool borrow_colour(double sum[4], const struct surface_job *job, struct vec3 p)
+/* Adds the colours of the seen places within so many slices of voxels of P, by their distance from it in plan. */
+static void add_seen(double sum[4], const struct surface_job *job, struct vec3 p, int slices)
 {
     const struct voxel_grid *g = &job->volume->grid;
     const int at = (int)floor((p.z - g->origin.z) / g->voxel);
-    const int from = at < BORROW_SLICES ? 0 : at - BORROW_SLICES;
-    const int to = at + BORROW_SLICES + 1 > g->size[2] ? g->size[2] : at + BORROW_SLICES + 1;
+    const int from = at > slices ? at - slices : 0, to = at + slices + 1 < g->size[2] ? at + slices + 1 : g->size[2];
     const double blur = BORROW_BLUR * g->voxel;
     for (int i = from < to ? job->seen->first[from] : 0; from < to && i < job->seen->first[to]; i++) {
         const struct seen_place *s = &job->seen->list[i];
@@ -211,6 +214,13 @@ static bool borrow_colour(double sum[4], const struct surface_job *job, struct v
         for (int c = 0; c < 3; c++) sum[c] += weight * (double)s->rgb[c];
         sum[3] += weight;
     }
+}
+
+/* The mean colour of the places around P that a view sees, at about its height: furniture is made of boards and sides,
+ * whose colours change with the height more than along it. p: in the model's frame. */
+static bool borrow_colour(double sum[4], const struct surface_job *job, struct vec3 p)
+{
+    for (int slices = 1; slices <= BORROW_SLICES && !(sum[3] > 0); slices *= 2) add_seen(sum, job, p, slices);
     return sum[3] > 0;
 }
 
@@ -247,7 +257,8 @@ static void draw_pixel(const struct surface_job *job, int x, int y)
     const float share = flat ? meet_flat(&t, job, flat, from, x, y) : (float)meet_either(&t, job, from, way);
     if (!(share > 0)) return;
     const float z = (float)(t * axes->scale), shell = job->shell[at]; /* t: depth in scene units */
-    if (shell > 0 && z > shell * (1 + (flat ? FLAT_BEHIND : MAX_BEHIND))) return;
+    const float behind = fminf(shell * (flat ? FLAT_BEHIND : MAX_BEHIND), (float)(THROUGH * job->volume->grid.voxel));
+    if (shell > 0 && z > shell + behind) return;
     const struct vec3 p = view_unproject(job->camera, x + 0.5, y + 0.5, t);
     const struct vec3 normal =
         flat ? flat->normal : thing_volume_normal(job->volume, job->thing->id, vec3_add(from, vec3_scale(way, t)));

@@ -3,6 +3,7 @@
 #include "stages/render_model/thing_surface.h"
 
 #include "common/base/parallel.h"
+#include "stages/render_model/thing_hull.h"
 #include "tests/unit/box_solids.h"
 
 enum { SIZE = 40, W = 80, H = 60, SOURCES = 3, THING = 2 };
@@ -127,7 +128,8 @@ static void draw(struct scene *s)
     const struct thing_points points = points_of(&s->volume);
     struct thing_rows rows;
     const struct thing_shape thing = {THING, &s->volume, &points, &s->outline};
-    thing_surface_draw(&rows, &s->layer, s->shell, &s->clutter, &s->choice, &s->camera, &thing);
+    struct err err = ERR_INIT;
+    assert_ok(thing_surface_draw(&rows, &s->layer, s->shell, &s->clutter, &s->choice, &s->camera, &thing, &err), err);
     for (int i = 0; i < W * H; i++)
         assert_true(!(s->layer.rgba[4 * i + 3] > 0) || ((size_t)(i / W) >= rows.first && (size_t)(i / W) < rows.last));
 }
@@ -232,19 +234,172 @@ static void what_a_view_shows_of_another_thing_is_no_colour(void **state)
     scene_release(&s);
 }
 
-static void a_view_from_behind_gives_no_colour(void **state)
+/* A view that shows the thing where it is, with true depth, and a wall behind it; the upper half of the picture is red,
+ * the lower half green. */
+static void see_ball(struct scene *s, int at)
+{
+    struct clutter_view *v = &s->sources[at].view;
+    const struct view camera = s->camera;
+    clutter_view_release(v);
+    make_source(s, at, 1, 0, 1.4);
+    s->camera = s->views[at];
+    for (int i = 0; i < W * H; i++) {
+        double slant;
+        const double z = ball_depth(s, i, &slant);
+        v->sight[i] = (struct clutter_sight){.nearest = (float)(z > 0 ? 1 / z : 0.2),
+                                             .thing = z > 0 ? THING : 0,
+                                             .sure = CLUTTER_SURE,
+                                             .shows = z > 0 ? CLUTTER_SURE : 0};
+        uint16_t *c = v->layers.photo[(size_t)(i / W + 1) * (size_t)v->layers.stride + (size_t)(i % W) + 1];
+        if (i / W >= H / 2) c[0] = 0, c[1] = 0x3c00; /* 1 as half */
+    }
+    v->knows_things = true;
+    s->camera = camera;
+}
+
+/* From behind nobody saw the ball: it is drawn in the colours of the front at the same height. */
+static void a_side_that_no_view_sees_has_the_colours_at_its_height(void **state)
 {
     static struct scene s;
-    const int centre = (H / 2) * W + W / 2;
+    int upper = 0, lower = 0;
     (void)state;
     scene_make(&s, to_ball);
+    s.camera = s.views[0] = looking_from(3.5, 2, 3);
+    see_ball(&s, 0);
+    s.camera = looking_from(-1.5, 2, 3);
     draw(&s);
-    const int whole = count_drawn(&s);
-    assert_true(is_drawn(&s, centre));
-    s.views[0] = looking_from(2 * middle.x - 3.5, 2 * middle.y - 3, 2 * middle.z - 3.75);
+    for (int i = 0; i < W * H; i++) {
+        double slant;
+        const double z = ball_depth(&s, i, &slant), height = z > 0 ? ray_point(&s, i, z).z : 0;
+        const float *c = &s.layer.rgba[4 * i];
+        if (slant < 0.6) continue;
+        assert_true(is_drawn(&s, i));
+        if (height > 3 * VOXEL) assert_true(c[0] > 0.95f && c[1] < 0.05f), upper++;
+        if (height < -3 * VOXEL) assert_true(c[0] < 0.05f && c[1] > 0.95f), lower++;
+    }
+    assert_true(upper > 50 && lower > 50);
+    scene_release(&s);
+}
+
+/* Whether the hull holds a place, from the middle of the grid. */
+static bool hull_holds(const struct thing_hull *h, double x, double y, double z)
+{
+    return thing_hull_at(h, vec3_add(middle, vec3_make(x, y, z)));
+}
+
+static void hull_of(struct thing_hull *h, const struct scene *s)
+{
+    struct err err = ERR_INIT;
+    const struct thing_points points = points_of(&s->volume);
+    const struct thing_shape thing = {THING, &s->volume, &points, &s->outline};
+    assert_ok(thing_hull_find(h, &s->clutter, &s->choice, &thing, &err), err);
+}
+
+/* What is before the back of the ball was not looked into. */
+static void forget_back(struct scene *s)
+{
+    for (int64_t i = 0; i < (int64_t)voxel_count(&s->volume.grid); i++)
+        if (thing_voxel_centre(&s->volume.grid, i).x < middle.x && s->volume.distance[i] > 0)
+            s->volume.id[i] = 0, s->volume.distance[i] = THING_UNSEEN;
+}
+
+/* One view alone sees the ball, from +x: all that is in its shadow may be filled, until something says otherwise. */
+static void the_hull_is_what_a_thing_hides(void **state)
+{
+    static struct scene s;
+    struct thing_hull h;
+    (void)state;
+    scene_make(&s, to_ball);
+    s.camera = s.views[0] = looking_from(3.5, 2, 3);
+    see_ball(&s, 0);
+    for (size_t i = 0; i < voxel_count(&s.volume.grid); i++)
+        if (!s.volume.id[i]) s.volume.distance[i] = THING_UNSEEN;
+    hull_of(&h, &s);
+    assert_true(hull_holds(&h, 0, 0, 0) && hull_holds(&h, 0.4, 0, 0) && hull_holds(&h, -0.9, 0, 0));
+    assert_true(hull_holds(&h, -0.8, 0.55, 0));   /* in the cone of the shadow */
+    assert_false(hull_holds(&h, 0, 0.6, 0));      /* beside the ball */
+    assert_false(hull_holds(&h, 0.6, 0, 0));      /* before it */
+    assert_false(hull_holds(&h, -0.8, 0.9, 0.2)); /* beside the shadow */
+    thing_hull_release(&h);
+    /* another view sees the other side */
+    s.views[1] = looking_from(1, 4.5, 3);
+    see_ball(&s, 1);
+    s.choice = (struct clutter_choice){.view = {0, 1}, .fade = {1, 1}, .count = 2};
+    hull_of(&h, &s);
+    assert_true(hull_holds(&h, 0, 0, 0));
+    assert_false(hull_holds(&h, -0.9, 0, 0) || hull_holds(&h, 0, -0.9, 0));
+    thing_hull_release(&h);
+    scene_release(&s);
+}
+
+/* Places that the depth of any view calls free, and those of other things, are not filled. */
+static void the_hull_leaves_out_what_is_free_or_of_another_thing(void **state)
+{
+    static struct scene s;
+    struct thing_hull h;
+    (void)state;
+    scene_make(&s, to_ball);
+    s.camera = s.views[0] = looking_from(3.5, 2, 3);
+    see_ball(&s, 0);
+    forget_back(&s);
+    for (int64_t i = 0; i < (int64_t)voxel_count(&s.volume.grid); i++) {
+        const struct vec3 p = vec3_sub(thing_voxel_centre(&s.volume.grid, i), middle);
+        if (p.x < -0.7 && p.z > 0) s.volume.id[i] = 0, s.volume.distance[i] = 1;
+        if (p.x < -0.7 && p.z < 0) s.volume.id[i] = THING + 1;
+    }
+    hull_of(&h, &s);
+    assert_true(hull_holds(&h, -0.6, 0, 0.1) && hull_holds(&h, -0.6, 0, -0.1));
+    assert_false(hull_holds(&h, -0.8, 0, 0.1) || hull_holds(&h, -0.8, 0, -0.1));
+    thing_hull_release(&h);
+    scene_release(&s);
+}
+
+/* A wall stands in the shadow: the hull ends there. */
+static void the_hull_ends_at_walls(void **state)
+{
+    static struct scene s;
+    struct thing_hull h;
+    struct err err = ERR_INIT;
+    const struct box boxes[] = {{"walls", "out", {-3, -3, -3}, {9, 9, 9}, false},
+                                {"walls", "in", {-2.8, -2.8, -2.8}, {8.8, 8.8, 8.8}, true},
+                                {"wall/a", "a", {0.3, -2, -2}, {0.4, 8, 8}, false}};
+    struct model_rays walls = {.mesh = make_boxes(boxes, 3)};
+    (void)state;
+    assert_ok(model_rays_build(&walls, MODEL_WITH_GLASS, &err), err);
+    scene_make(&s, to_ball);
+    s.clutter.walls = &walls;
+    s.camera = s.views[0] = looking_from(3.5, 2, 3);
+    see_ball(&s, 0);
+    forget_back(&s);
+    hull_of(&h, &s);
+    assert_true(hull_holds(&h, -0.55, 0, 0));
+    assert_false(hull_holds(&h, -0.65, 0, 0) || hull_holds(&h, -0.8, 0, 0));
+    thing_hull_release(&h);
+    model_rays_release(&walls);
+    scene_release(&s);
+}
+
+/* A bookcase of which views saw the front alone: its side is where the hull ends. */
+static void a_ray_meets_the_hull_where_no_surface_is(void **state)
+{
+    static struct scene s;
+    int drawn = 0;
+    (void)state;
+    scene_make(&s, to_ball);
+    s.camera = s.views[0] = looking_from(3.5, 2, 3);
+    see_ball(&s, 0);
+    for (int64_t i = 0; i < (int64_t)voxel_count(&s.volume.grid); i++)
+        if (thing_voxel_centre(&s.volume.grid, i).x < middle.x + 0.2)
+            s.volume.id[i] = 0, s.volume.distance[i] = THING_UNSEEN;
+    s.camera = looking_from(1, 4.5, 3);
     draw(&s);
-    assert_false(is_drawn(&s, centre));
-    assert_in_range(count_drawn(&s), 0, whole / 4); /* of the rim, where both look along the surface */
+    for (int i = 0; i < W * H; i++) {
+        if (!is_drawn(&s, i)) continue;
+        const struct vec3 p = ray_point(&s, i, (double)s.layer.z[i]);
+        drawn += p.x < 0;
+        assert_true(hypot(p.y, p.z) < 0.85); /* the shadow's cone at the end of the box */
+    }
+    assert_true(drawn > 300);
     scene_release(&s);
 }
 
@@ -489,7 +644,8 @@ static void it_lies_under_what_the_layer_has(void **state)
             s.layer.z[i] = 1;
         }
         const struct thing_shape thing = {THING, &s.volume, &points, &s.outline};
-        thing_surface_draw(&rows, &s.layer, s.shell, &s.clutter, &s.choice, &s.camera, &thing);
+        struct err err = ERR_INIT;
+        assert_ok(thing_surface_draw(&rows, &s.layer, s.shell, &s.clutter, &s.choice, &s.camera, &thing, &err), err);
         assert_float_equal(s.layer.rgba[4 * centre], 0.1f * covers[k] + 0.75f * (1 - covers[k]), 1e-3);
         assert_float_equal(s.layer.rgba[4 * centre + 3], 1, 0);
         assert_float_equal(s.layer.z[centre], covers[k] < 0.5f ? surface : 1, 1e-6);
@@ -522,7 +678,11 @@ int main(void)
         cmocka_unit_test(a_ball_is_met_at_its_front),
         cmocka_unit_test(the_faces_of_a_block_are_met_exactly),
         cmocka_unit_test(what_a_view_shows_of_another_thing_is_no_colour),
-        cmocka_unit_test(a_view_from_behind_gives_no_colour),
+        cmocka_unit_test(a_side_that_no_view_sees_has_the_colours_at_its_height),
+        cmocka_unit_test(the_hull_is_what_a_thing_hides),
+        cmocka_unit_test(the_hull_leaves_out_what_is_free_or_of_another_thing),
+        cmocka_unit_test(the_hull_ends_at_walls),
+        cmocka_unit_test(a_ray_meets_the_hull_where_no_surface_is),
         cmocka_unit_test(the_shell_hides_what_is_behind_it),
         cmocka_unit_test(unseen_and_foreign_voxels_make_no_surface),
         cmocka_unit_test(a_surface_needs_what_is_before_it),
