@@ -3,9 +3,9 @@
 #include "common/texture/bake.h"
 #include "tests/unit/scratch.h"
 
-/* The floor is a square of 4 x 4 at z = 0, with 64 x 64 texels. The box stands on its middle. Two cameras at a height of
- * 4 look straight down from its left and right, so that their pixels lie on texels: what they show is exact, and what
- * both of them miss is what the box stands on. */
+/* The floor is a square of 4 x 4 at z = 0, with 64 x 64 texels. The box stands on its middle. Two cameras at a height
+ * of 4 look straight down from its left and right, so that their pixels lie on texels: what they show is exact, and
+ * what both of them miss is what the box stands on. */
 enum { SIZE = 64, ID = 5, VIEWS = 2 };
 static const double FOCAL = 64, HEIGHT = 4, BOX_TOP = 0.5, BOX[2] = {1.5, 2.5}, RIM = 1.0 / 16;
 
