@@ -20,11 +20,13 @@
 #include "common/texture/bake.h"
 #include "common/texture/fill.h"
 #include "common/texture/filled_atlas.h"
+#include "common/texture/hole_pieces.h"
 
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
+static const float SLACK = 1e-7f;       /* weight of pairs of a hole until what is seen is solved: they bend nothing */
 static const float GUIDED = 5e-3f;      /* weight of the filled atlas: a hole's rim tells less beyond 14 texels */
 static const double DEFAULT_GREY = 0.5; /* of white */
-enum { REACH = 12 };                    /* texels: of the clean ones that an unseen one continues */
+enum { REACH = 12, FURNITURE = 24 };    /* texels: of the clean ones that an unseen one continues; behind furniture */
 enum { MIN_SEEN = 8 };                  /* of these */
 enum { ALIKE = 8 };                     /* neighbours are alike: this many count as one */
 enum { SIDE = 6 };                      /* texels beside a hole in which only views of sure depth count */
@@ -134,17 +136,17 @@ static bool excess_around(struct excess *e, const struct composite *c, size_t ho
     return count >= MIN_SEEN;
 }
 
-/* Lets an unseen texel beside a seen one continue the clean texels behind that, if nothing stands before it: its hole
- * is one that an edit walls up, and the rim may hold the reveal of a window that the model puts a little elsewhere.
- * Only what the rim surely has above the clean texels is left out. */
+/* Lets an unseen texel beside a seen one continue the clean texels behind that. Of a hole that an edit walls up the rim
+ * may hold the reveal of a window that the model puts a little elsewhere; of one behind furniture it holds the deepest
+ * part of its shadow. Only what the rim surely has above the clean texels, or below them, is left out. */
 static void leave_rim(struct composite *c, int side, size_t at, size_t next)
 {
     const size_t hole = c->unseen[at] ? at : next, rim = c->unseen[at] ? next : at;
     const int32_t list = c->b->list[c->t->first + hole];
     struct excess clean, soiled;
+    const int reach = list >= 0 && c->b->hidden[list] ? FURNITURE : REACH;
     if (c->unseen[at] == c->unseen[next] || c->role[rim] != GRADIENT_FIXED || c->clean[rim]) return;
-    if (list >= 0 && c->b->hidden[list]) return;
-    if (!excess_around(&clean, c, hole, rim, REACH, true) || !excess_around(&soiled, c, hole, rim, RIM, false)) return;
+    if (!excess_around(&clean, c, hole, rim, reach, true) || !excess_around(&soiled, c, hole, rim, RIM, false)) return;
     const double sign = c->unseen[at] ? -1 : 1;
     for (size_t k = 0; k < 3; k++) {
         const double above = clean.mean[k] - soiled.mean[k], doubt = 4 * (clean.variance[k] + soiled.variance[k]);
@@ -172,7 +174,7 @@ static void set_pair(struct composite *c, int side, size_t at, size_t next)
                          is_warped(b, q) ? b->lists[b->list[q]][0].source : -1};
     bool known = best[0] >= 0 && add_difference(c, side, at, p, q, best[0]);
     if (best[1] >= 0 && best[1] != best[0] && add_difference(c, side, at, p, q, best[1])) known = true;
-    if (!known) c->weight[side][at] = 1;
+    if (!known) c->weight[side][at] = (c->unseen[at] || c->unseen[next]) && !c->fill.value ? SLACK : 1;
     if (!known && is_loose(c, at, next)) {
         c->weight[side][at] = 0;
         return;
@@ -237,6 +239,30 @@ static void widen_holes(struct composite *c)
             }
             if (near) keep_clean(b, (size_t)b->list[texel]);
         }
+}
+
+/* Takes pieces of furniture beside holes into these. */
+static enum status drop_pieces(struct composite *c, struct err *err)
+{
+    struct bake *b = c->b;
+    const size_t n = texels_of(c->t);
+    for (size_t i = 0; i < n; i++) {
+        const size_t texel = c->t->first + i;
+        c->unseen[i] = is_hole(b, texel);
+        c->clean[i] = is_warped(b, texel) || b->role[texel] == TEXEL_ORIGINAL;
+        if (is_warped(b, texel)) display_of(c->value + 3 * i, b, &b->lists[b->list[texel]][0]);
+        for (size_t k = 0; k < 3 && b->role[texel] == TEXEL_ORIGINAL; k++)
+            c->value[3 * i + k] = bake_display(b->rgb[3 * texel + k], b->white);
+    }
+    const struct hole_picture picture = {c->t->raster.width, c->t->raster.height, c->value, c->unseen, c->clean};
+    if (hole_pieces_find(c->role, &picture, (float)b->params->max_gradient, err)) return err->status;
+    for (size_t i = 0; i < n; i++) {
+        const size_t texel = c->t->first + i;
+        if (!c->role[i] || !is_warped(b, texel)) continue;
+        b->counts[b->list[texel]] = 0;
+        if (!b->hidden[b->list[texel]]) b->hidden[b->list[texel]] = 1;
+    }
+    return ST_OK;
 }
 
 /* Roles, and the values of texels that views show. */
@@ -392,6 +418,7 @@ static bool find_nearest_seen(struct composite *c)
 static enum status solve_tile(struct composite *c, struct bake_totals *totals, struct err *err)
 {
     widen_holes(c);
+    if (drop_pieces(c, err)) return err->status;
     set_seen(c);
     find_nearest_seen(c);
     set_unseen(c, GRADIENT_FREE);
