@@ -14,6 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/relight/thing_light.h"
+
 static const double INSET = 0.005; /* of the model's size: 5 cm of 10 m */
 static const double ELEMENT = 0.1; /* model units: width of the objects' elements */
 
@@ -117,8 +119,9 @@ enum status light_change_read(struct light_change *c, const struct light_change_
         !light_things_read(&c->things, files->things, &c->map, files->all_things, files->base, files->edited, prov,
                            err) &&
         !add_surfaces(c, err) && !read_fields(c, files, prov, err) &&
-        !face_areas_make(&c->old, &c->before.model.mesh, err))
-        unite_emitters(c, err);
+        !face_areas_make(&c->old, &c->before.model.mesh, err) && !unite_emitters(c, err) && c->things.before.count &&
+        !files->all_things)
+        thing_light_find(&c->things.before, &c->before.plain, &c->added, c->objects.count, &c->after.plain, err);
     c->inset = INSET * model_rays_size(&c->before.model);
     return err->status;
 }
