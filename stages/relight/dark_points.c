@@ -49,7 +49,7 @@ static bool mean_around(float to[4], const float (*quotient)[4], const unsigned 
 }
 
 enum status dark_points_fill(float (*quotient)[4], const struct irradiance *before, const struct irradiance *after,
-                             const struct pixels *p, struct err *err)
+                             const struct pixels *p, bool things, struct err *err)
 {
     const size_t n = (size_t)p->width * (size_t)p->height;
     const double dark[2] = {DARK * mean_light(before, n), DARK * mean_light(after, n)};
@@ -61,7 +61,8 @@ enum status dark_points_fill(float (*quotient)[4], const struct irradiance *befo
         const bool is_dark = !(rgb_luminance(before[i].value) > dark[0]) || !(rgb_luminance(after[i].value) > dark[1]);
         const bool is_known = p->kind[i] == PIXEL_TEXTURE || p->kind[i] == PIXEL_CLUTTER;
         state[i] = quotient[i][3] > RELIT_NONE && is_known ? KNOWN : NONE;
-        if (state[i] == NONE || p->kind[i] != PIXEL_CLUTTER || !is_dark) continue;
+        const bool is_too_bright = things && p->kind[i] == PIXEL_TEXTURE && quotient[i][3] == RELIT_BOUNDED;
+        if (state[i] == NONE || !(is_too_bright || (p->kind[i] == PIXEL_CLUTTER && is_dark))) continue;
         state[i] = UNKNOWN;
         left[count++] = i;
     }

@@ -450,7 +450,7 @@ enum status relit_make(struct relit *r, struct model_picture *picture, const str
         j.dark = DARK * mean_light(r);
         if (is_gathered) parallel_for(n, 256, find_some, &j);
         if (is_gathered && !quotients_settle(r->quotient, r->error, p, params, err)) fit_penumbra(&j, err);
-        if (is_gathered && !err->status) dark_points_fill(r->quotient, r->before, r->after, p, err);
+        if (is_gathered && !err->status) dark_points_fill(r->quotient, r->before, r->after, p, c->things.changes, err);
         if (!err->status) parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
         if (!err->status) shade_objects(&j, err);
     }

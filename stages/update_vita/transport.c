@@ -17,6 +17,7 @@
 #include "common/light/frame.h"
 #include "common/light/sobol.h"
 #include "common/math/numbers.h"
+#include "common/relight/light_quotient.h"
 
 enum { DIRECT_SHARE = 4 };             /* rays / this go towards emitters */
 static const double IN_SIGHT = 0.5;    /* of a place's hemisphere: things that stand beside it cover so much */
@@ -294,16 +295,39 @@ static void trace_some(void *ctx, size_t begin, size_t end, int thread)
 enum { MAX_SWEEPS = 5000 };
 static const double SETTLED = 1e-5; /* largest change of a sweep that ends them, as a part of the light */
 
-/* Whether the bake filled the place from around it, because furniture hid it. */
-static bool is_hole(const struct transport *t, int i)
+bool transport_is_hole(const struct transport *t, int sample)
 {
-    const struct light_place *p = &t->samples[i].place;
+    const struct light_place *p = &t->samples[sample].place;
     return p->kind == LIGHT_PLACE_TEXTURE && p->source == LIGHT_SYNTHESISED;
+}
+
+/* Whether photographs show the place brighter than a white one is under the light that was found before the edit. */
+static bool is_too_bright(const struct transport *t, int sample)
+{
+    const struct light_place *p = &t->samples[sample].place;
+    return p->kind == LIGHT_PLACE_TEXTURE &&
+           rgb_max(light_albedo(t->rows[sample].before, p->colour)) > LIGHT_ALBEDO_MAX;
+}
+
+/* Marks the samples of a face whose light is to be continued; the result is their number. Places that are too bright
+ * count, unless most are: furniture is found a little too large, and what photographs show beside it seems to lie
+ * inside. */
+static int mark_holes(bool *hole, const struct transport *t, const struct face_net *net)
+{
+    int holes = 0, bright = 0;
+    for (int i = 0; i < net->count; i++) {
+        holes += hole[i] = transport_is_hole(t, net->samples[i]);
+        bright += !hole[i] && is_too_bright(t, net->samples[i]);
+    }
+    if (2 * bright > net->count - holes) return holes;
+    for (int i = 0; i < net->count; i++)
+        if (!hole[i] && is_too_bright(t, net->samples[i])) hole[i] = true;
+    return holes + bright;
 }
 
 /* One sweep over a face: samples in holes become the mean of those beside them that have light before the edit; paint
  * has none. The result is the largest change, as a part of the light. */
-static double smooth_holes(struct transport *t, const struct face_net *net, double (*sums)[4])
+static double smooth_holes(struct transport *t, const struct face_net *net, const bool *hole, double (*sums)[4])
 {
     memset(sums, 0, (size_t)net->count * sizeof *sums);
     for (int i = 0; i < net->triangle_count; i++)
@@ -319,7 +343,7 @@ static double smooth_holes(struct transport *t, const struct face_net *net, doub
             }
     double largest = 0;
     for (int i = 0; i < net->count; i++) {
-        if (!is_hole(t, net->samples[i]) || !(sums[i][3] > 0)) continue;
+        if (!hole[i] || !(sums[i][3] > 0)) continue;
         struct rgb *light = &t->rows[net->samples[i]].before;
         const struct rgb mean = rgb_scale(rgb_make(sums[i][0], sums[i][1], sums[i][2]), 1 / sums[i][3]);
         const double change = fmax(fabs(mean.r - light->r), fmax(fabs(mean.g - light->g), fabs(mean.b - light->b)));
@@ -329,7 +353,8 @@ static double smooth_holes(struct transport *t, const struct face_net *net, doub
     return largest;
 }
 
-static enum status continue_into_face(struct transport *t, const struct face_net *net, struct err *err)
+static enum status continue_into_face(struct transport *t, const struct face_net *net, const bool *hole,
+                                      struct err *err)
 {
     double(*sums)[4] = malloc((size_t)net->count * sizeof *sums);
     if (!sums) return err_nomem(err, "samples", (size_t)net->count * sizeof *sums);
@@ -337,7 +362,7 @@ static enum status continue_into_face(struct transport *t, const struct face_net
         struct transport_row *row = &t->rows[net->samples[i]];
         row->before = row->gathered;
     }
-    for (int k = 0; k < MAX_SWEEPS && smooth_holes(t, net, sums) > SETTLED; k++) continue;
+    for (int k = 0; k < MAX_SWEEPS && smooth_holes(t, net, hole, sums) > SETTLED; k++) continue;
     for (int i = 0; i < net->count; i++) {
         struct transport_row *row = &t->rows[net->samples[i]];
         if (row->own > 0)
@@ -352,13 +377,15 @@ static enum status continue_into_face(struct transport *t, const struct face_net
  * own: such a texel is too bright before and after alike, and furniture beside it sees no change that is none. */
 static enum status continue_into_holes(struct transport *t, struct err *err)
 {
-    for (int f = 0; f < t->nets->mesh->face_count; f++) {
+    bool *hole = malloc((size_t)t->count + 1);
+    if (!hole) return err_nomem(err, "samples", (size_t)t->count);
+    for (int f = 0; !err->status && f < t->nets->mesh->face_count; f++) {
         const struct face_net *net = &t->nets->nets[f];
-        int holes = 0;
-        for (int i = 0; i < net->count; i++) holes += is_hole(t, net->samples[i]);
-        if (holes && holes < net->count && continue_into_face(t, net, err)) return err->status;
+        const int holes = mark_holes(hole, t, net);
+        if (holes && holes < net->count) continue_into_face(t, net, hole, err);
     }
-    return ST_OK;
+    free(hole);
+    return err->status;
 }
 
 enum status transport_trace(struct transport *t, int first, int count, int rays,

@@ -54,6 +54,9 @@ void transport_release(struct transport *t);
 enum status transport_trace(struct transport *t, int first, int count, int rays,
                             void (*done)(void *ctx, int64_t samples), void *done_ctx, struct err *err);
 
+/* Whether the bake filled the place from around it, because furniture hid it. */
+bool transport_is_hole(const struct transport *t, int sample);
+
 /* Irradiance at a sample, from the values of all samples, rgb each: 2 j the quotient, 2 j + 1 the irradiance of sample
  * j. */
 struct rgb transport_gather(const struct transport_row *row, const struct rgb *values);

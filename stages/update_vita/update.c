@@ -88,8 +88,12 @@ static enum status first_values(const struct work *w, struct rgb **values, struc
     return err->status;
 }
 
+/* How far light differs between two samples. The rim of a hole behind furniture always counts: there the shadow is
+ * deepest, and the hole continues the light of the samples beside it. */
 static double difference(const struct work *w, const struct rgb *values, int a, int b)
 {
+    const struct transport *t = &w->transport;
+    if (w->change.things.changes && transport_is_hole(t, a) != transport_is_hole(t, b)) return INFINITY;
     const bool is_colour = w->transport.samples[a].place.kind == LIGHT_PLACE_COLOUR;
     const double x = rgb_luminance(values[2 * a + is_colour]), y = rgb_luminance(values[2 * b + is_colour]);
     return x + y > 0 ? 2 * fabs(x - y) / (x + y) : 0;

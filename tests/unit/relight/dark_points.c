@@ -32,7 +32,7 @@ static bool is_furniture(const struct dark *d, int i) { return d->kind[i] == PIX
 static void fill(struct dark *d)
 {
     struct err err = ERR_INIT;
-    assert_ok(dark_points_fill(d->quotient, d->before, d->after, &d->p, &err), err);
+    assert_ok(dark_points_fill(d->quotient, d->before, d->after, &d->p, false, &err), err);
 }
 
 /* Without light before and after, the quotient is 1: a bright spot where all else becomes darker. */
