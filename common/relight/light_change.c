@@ -17,6 +17,7 @@
 #include "common/relight/thing_light.h"
 
 static const double INSET = 0.005; /* of the model's size: 5 cm of 10 m */
+static const double PART = 0.02;   /* of the model's size: what of furniture sends out alike */
 static const double ELEMENT = 0.1; /* model units: width of the objects' elements */
 
 /* --------------------------------------------------------------------------------------------------------- emitters */
@@ -121,7 +122,8 @@ enum status light_change_read(struct light_change *c, const struct light_change_
         !add_surfaces(c, err) && !read_fields(c, files, prov, err) &&
         !face_areas_make(&c->old, &c->before.model.mesh, err) && !unite_emitters(c, err) && c->things.before.count &&
         !files->all_things)
-        thing_light_find(&c->things.before, &c->before.plain, &c->added, c->objects.count, &c->after.plain, err);
+        thing_light_find(&c->things.before, &c->before.plain, &c->added, c->objects.count, &c->after.plain,
+                         PART * model_rays_size(&c->before.model), err);
     c->inset = INSET * model_rays_size(&c->before.model);
     return err->status;
 }

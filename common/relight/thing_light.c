@@ -6,11 +6,14 @@
  * furniture goes.
  *
  * So a thing has one albedo for each of its six sides, such that the light which these get in the room before the edit
- * gives the mean that photos show. Each triangle then sends out the albedo of its side times the light at its middle,
- * and its back does so with the light on the back. Light is gathered twice, since things light each other.
+ * gives the mean that photos show. Each part of it then sends out the albedo of its side times the light on it, and
+ * its back does so with the light on the back. Light is gathered twice, since things light each other.
  *
- * Mathematics. With A the area of a triangle, E its irradiance and L the mean radiance of its side, the albedo of a
- * side is pi sum(A L) / sum(A E), at most 0.95. */
+ * A part is what of a side lies in one cube of a grid. Its light is the mean over some places, spread by area: surfaces
+ * are rough, and most parts are small. Where an edit puts a thing, it has the parts and the sides that it had before.
+ *
+ * Mathematics. With A the area of a part, E its irradiance and L the mean radiance of its side, the albedo of a side is
+ * pi sum(A L) / sum(A E), at most 0.95. */
 #include "common/relight/thing_light.h"
 
 #include <math.h>
@@ -22,24 +25,48 @@
 #include "common/math/numbers.h"
 #include "common/relight/light_quotient.h"
 
-enum { RAYS = 64, ROUNDS = 2, SIDES = 6 };
+enum { PLACES = 8, RAYS = 16, ROUNDS = 2, SIDES = 6 }; /* places of a part as large as a side of its cube */
+enum { CUBES = 1 << 15 };                              /* in a row of the grid; what is beyond belongs to the last */
+
+struct part {
+    int first, count; /* triangles, in `list` */
+    int before;       /* its number before the edit */
+    int thing, side;
+    double area;
+    struct rgb light[2]; /* of its front and of its back */
+};
+
+/* The parts of all things of one room. */
+struct parts {
+    struct thing_surfaces *s;
+    const struct light_field *field;
+    double cube; /* its width */
+    int *list;   /* triangles, by part */
+    struct part *parts;
+    int count;
+};
+
+struct keyed {
+    uint64_t key; /* of the part */
+    int triangle;
+};
 
 struct side_sum {
     struct rgb light, sent; /* area times irradiance, area times radiance */
-};
-
-struct gather_job {
-    const struct thing_surfaces *s;
-    const struct light_field *field;
-    const uint64_t *key; /* of each triangle: the same before and after the edit */
-    int first;
-    struct rgb (*light)[2]; /* of both sides of each triangle */
 };
 
 static struct vec3 cross_of(const struct thing_surfaces *s, int i)
 {
     const struct vec3 *p = s->triangles[i];
     return vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
+}
+
+static double area_of(const struct thing_surfaces *s, int i) { return 0.5 * vec3_length(cross_of(s, i)); }
+
+static struct vec3 middle_of(const struct thing_surfaces *s, int i)
+{
+    const struct vec3 *p = s->triangles[i];
+    return vec3_scale(vec3_add(vec3_add(p[0], p[1]), p[2]), 1.0 / 3);
 }
 
 /* Which of the six sides of a thing a triangle belongs to. */
@@ -52,30 +79,134 @@ static int side_of(const struct thing_surfaces *s, int i)
     return 2 * k + (n[k] < 0);
 }
 
-static void gather_some(void *ctx, size_t begin, size_t end, int thread)
+/* ------------------------------------------------------------------------------------------------------------ parts */
+
+static int compare(const void *a, const void *b)
 {
-    const struct gather_job *j = ctx;
-    (void)thread;
-    for (size_t n = begin; n < end; n++) {
-        const int i = j->first + (int)n;
-        const struct vec3 *p = j->s->triangles[i], normal = vec3_normalize(cross_of(j->s, i));
-        const struct vec3 middle = vec3_scale(vec3_add(vec3_add(p[0], p[1]), p[2]), 1.0 / 3);
-        for (int side = 0; side < 2; side++) {
-            const struct gather_point at = {middle, side ? vec3_scale(normal, -1) : normal};
-            struct irradiance e;
-            ray_irradiance(&e, j->field, at, RAYS, 2 * j->key[i] + (uint64_t)side);
-            j->light[i][side] = e.value;
-        }
+    const struct keyed *x = a, *y = b;
+    if (x->key != y->key) return x->key < y->key ? -1 : 1;
+    return x->triangle < y->triangle ? -1 : x->triangle > y->triangle;
+}
+
+/* Sorts the keyed triangles into parts. */
+static enum status make_parts(struct parts *p, struct keyed *keyed, int count, struct err *err)
+{
+    p->list = malloc(((size_t)count + 1) * sizeof *p->list);
+    p->parts = malloc(((size_t)count + 1) * sizeof *p->parts);
+    if (!p->list || !p->parts) return err_nomem(err, "the parts of furniture", (size_t)count * sizeof *p->parts);
+    qsort(keyed, (size_t)count, sizeof *keyed, compare);
+    for (int i = 0; i < count; i++) {
+        const int triangle = p->list[i] = keyed[i].triangle;
+        if (!i || keyed[i].key != keyed[i - 1].key)
+            p->parts[p->count++] = (struct part){.first = i, .before = p->count, .thing = p->s->thing[triangle]};
+        struct part *part = &p->parts[p->count - 1];
+        part->count++;
+        part->area += area_of(p->s, triangle);
+    }
+    return ST_OK;
+}
+
+static uint64_t cube_of(double from_low, double cube) { return (uint64_t)clamp(from_low / cube, 0, CUBES - 1); }
+
+/* Keys of the triangles before the edit: thing, side and cube. lows: a corner of each thing. */
+static void set_keys(struct keyed *keyed, const struct parts *p, struct vec3 *lows, int things)
+{
+    const struct thing_surfaces *s = p->s;
+    for (int k = 0; k < things; k++) lows[k] = vec3_make(INFINITY, INFINITY, INFINITY);
+    for (int i = 0; i < s->count; i++) {
+        struct vec3 *low = &lows[s->thing[i]];
+        const struct vec3 at = middle_of(s, i);
+        *low = vec3_make(fmin(low->x, at.x), fmin(low->y, at.y), fmin(low->z, at.z));
+    }
+    for (int i = 0; i < s->count; i++) {
+        const struct vec3 at = vec3_sub(middle_of(s, i), lows[s->thing[i]]);
+        uint64_t key = (uint64_t)(s->thing[i] * SIDES + side_of(s, i));
+        key = key * CUBES + cube_of(at.x, p->cube);
+        key = key * CUBES + cube_of(at.y, p->cube);
+        keyed[i] = (struct keyed){key * CUBES + cube_of(at.z, p->cube), i};
     }
 }
 
-/* The number of each triangle within its thing, with the thing's. Copies of a thing have the numbers of the first. */
-static void find_keys(uint64_t *key, const struct thing_surfaces *s, int first, const int *counts)
+static enum status find_parts_before(struct parts *p, struct vec3 *lows, int things, struct err *err)
 {
-    for (int i = first, n = 0; i < s->count; i++, n++) {
-        if (i > first && s->thing[i] != s->thing[i - 1]) n = 0;
-        key[i] = ((uint64_t)s->thing[i] << 32) + (uint64_t)(n % counts[s->thing[i]]);
+    const int count = p->s->count;
+    struct keyed *keyed = malloc(((size_t)count + 1) * sizeof *keyed);
+    if (!keyed) return err_nomem(err, "the parts of furniture", (size_t)count * sizeof *keyed);
+    set_keys(keyed, p, lows, things);
+    make_parts(p, keyed, count, err);
+    free(keyed);
+    for (int i = 0; !err->status && i < p->count; i++) p->parts[i].side = side_of(p->s, p->list[p->parts[i].first]);
+    return err->status;
+}
+
+/* The triangles of a thing come in one order at each of its places, from `first` of all: so each has the part of its
+ * likeness before the edit. */
+static enum status find_parts_after(struct parts *p, int first, const struct parts *was, struct err *err)
+{
+    const int count = p->s->count - first, before = was->s->count;
+    const size_t bytes = ((size_t)count + 1) * sizeof(struct keyed);
+    struct keyed *keyed = malloc(bytes);
+    int *part = malloc(((size_t)before + 1) * sizeof *part);
+    if (keyed && part) {
+        for (int k = 0; k < was->count; k++)
+            for (int i = 0; i < was->parts[k].count; i++) part[was->list[was->parts[k].first + i]] = k;
+        for (int i = 0, begin = 0, end = 0, n = 0, place = 0; i < count; i++, n++) {
+            const int thing = p->s->thing[first + i];
+            if (!i || thing != p->s->thing[first + i - 1]) {
+                begin = end = n = place = 0;
+                while (begin < before && was->s->thing[begin] != thing) begin++;
+                for (end = begin; end < before && was->s->thing[end] == thing;) end++;
+            }
+            if (n == end - begin) n = 0, place++;
+            keyed[i] = (struct keyed){(uint64_t)place * (uint64_t)was->count + (uint64_t)part[begin + n], first + i};
+        }
+        make_parts(p, keyed, count, err);
+        for (int i = 0; !err->status && i < p->count; i++) {
+            p->parts[i].before = (int)(keyed[p->parts[i].first].key % (uint64_t)was->count);
+            p->parts[i].side = was->parts[p->parts[i].before].side;
+        }
+    } else
+        err_nomem(err, "the parts of furniture", bytes);
+    free(keyed);
+    free(part);
+    return err->status;
+}
+
+static void release_parts(struct parts *p)
+{
+    free(p->list);
+    free(p->parts);
+}
+
+/* ------------------------------------------------------------------------------------------------------------ light */
+
+static struct rgb light_of_part(const struct parts *p, const struct part *part, int side)
+{
+    const int places = (int)clamp(ceil(PLACES * part->area / (p->cube * p->cube)), 1, PLACES);
+    struct rgb sum = {0, 0, 0};
+    double passed = 0;
+    int at = -1;
+    if (!(part->area > 0)) return sum;
+    for (int k = 0; k < places; k++) {
+        while (at + 1 < part->count && passed <= (k + 0.5) / places * part->area)
+            passed += area_of(p->s, p->list[part->first + ++at]);
+        const int i = p->list[part->first + at];
+        const struct vec3 normal = vec3_normalize(cross_of(p->s, i));
+        const uint64_t key = ((uint64_t)part->before * 2 + (uint64_t)side) * PLACES + (uint64_t)k;
+        struct irradiance e;
+        ray_irradiance(&e, p->field, (struct gather_point){middle_of(p->s, i), vec3_scale(normal, side ? -1 : 1)}, RAYS,
+                       key);
+        sum = rgb_add(sum, e.value);
     }
+    return rgb_scale(sum, 1.0 / places);
+}
+
+static void gather_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct parts *p = ctx;
+    (void)thread;
+    for (size_t n = begin; n < end; n++)
+        for (int side = 0; side < 2; side++) p->parts[n].light[side] = light_of_part(p, &p->parts[n], side);
 }
 
 static double albedo_of(double sent, double light)
@@ -83,15 +214,17 @@ static double albedo_of(double sent, double light)
     return light > 0 ? clamp(PI * sent / light, 0, LIGHT_ALBEDO_MAX) : 0;
 }
 
-static void find_albedos(struct rgb (*albedo)[SIDES], int things, const struct thing_surfaces *s,
-                         const struct rgb (*given)[2], const struct rgb (*light)[2], struct side_sum *sums)
+/* given: the radiance of each triangle that photos show. */
+static void find_albedos(struct rgb (*albedo)[SIDES], int things, const struct parts *p, const struct rgb (*given)[2],
+                         struct side_sum *sums)
 {
     memset(sums, 0, (size_t)things * SIDES * sizeof *sums);
-    for (int i = 0; i < s->count; i++) {
-        struct side_sum *sum = &sums[s->thing[i] * SIDES + side_of(s, i)];
-        const double area = 0.5 * vec3_length(cross_of(s, i));
-        sum->light = rgb_add(sum->light, rgb_scale(light[i][0], area));
-        sum->sent = rgb_add(sum->sent, rgb_scale(given[i][0], area));
+    for (int k = 0; k < p->count; k++) {
+        const struct part *part = &p->parts[k];
+        struct side_sum *sum = &sums[part->thing * SIDES + part->side];
+        sum->light = rgb_add(sum->light, rgb_scale(part->light[0], part->area));
+        for (int n = part->first; n < part->first + part->count; n++)
+            sum->sent = rgb_add(sum->sent, rgb_scale(given[p->list[n]][0], area_of(p->s, p->list[n])));
     }
     for (int k = 0; k < things * SIDES; k++)
         albedo[k / SIDES][k % SIDES] =
@@ -99,54 +232,52 @@ static void find_albedos(struct rgb (*albedo)[SIDES], int things, const struct t
                      albedo_of(sums[k].sent.b, sums[k].light.b));
 }
 
-static void set_radiance(struct thing_surfaces *s, int first, const struct rgb (*albedo)[SIDES],
-                         const struct rgb (*light)[2])
+static void set_radiance(const struct parts *p, const struct rgb (*albedo)[SIDES])
 {
-    for (int i = first; i < s->count; i++) {
-        const struct rgb a = rgb_scale(albedo[s->thing[i]][side_of(s, i)], 1 / PI);
-        for (int side = 0; side < 2; side++) s->radiance[i][side] = rgb_multiply(a, light[i][side]);
+    for (int k = 0; k < p->count; k++) {
+        const struct part *part = &p->parts[k];
+        const struct rgb a = rgb_scale(albedo[part->thing][part->side], 1 / PI);
+        for (int n = part->first; n < part->first + part->count; n++)
+            for (int side = 0; side < 2; side++) p->s->radiance[p->list[n]][side] = rgb_multiply(a, part->light[side]);
     }
 }
 
-static enum status find(struct thing_surfaces *before, const struct light_field *was, struct thing_surfaces *after,
-                        int first, const struct light_field *is, int things, struct err *err)
+static enum status find(struct parts *before, struct parts *after, int things, struct err *err)
 {
-    const size_t most = (size_t)(before->count > after->count ? before->count : after->count) + 1;
+    const size_t count = (size_t)before->s->count;
     struct rgb(*albedo)[SIDES] = calloc((size_t)things, sizeof *albedo);
-    struct rgb(*given)[2] = malloc(((size_t)before->count + 1) * sizeof *given);
-    struct rgb(*light)[2] = malloc(most * sizeof *light);
+    struct rgb(*given)[2] = malloc((count + 1) * sizeof *given);
     struct side_sum *sums = malloc((size_t)things * SIDES * sizeof *sums);
-    uint64_t *keys = malloc(2 * most * sizeof *keys);
-    int *counts = calloc((size_t)things, sizeof *counts);
-    if (albedo && given && light && sums && keys && counts) {
-        for (int i = 0; i < before->count; i++) counts[before->thing[i]]++;
-        find_keys(keys, before, 0, counts);
-        find_keys(keys + most, after, first, counts);
-        memcpy(given, before->radiance, (size_t)before->count * sizeof *given);
+    if (albedo && given && sums) {
+        memcpy(given, before->s->radiance, count * sizeof *given);
         for (int round = 0; round < ROUNDS; round++) {
-            struct gather_job old = {before, was, keys, 0, light}, new = {after, is, keys + most, first, light};
-            parallel_for((size_t)before->count, 16, gather_some, &old);
-            find_albedos(albedo, things, before, (const struct rgb(*)[2])given, (const struct rgb(*)[2])light, sums);
-            set_radiance(before, 0, (const struct rgb(*)[SIDES])albedo, (const struct rgb(*)[2])light);
-            parallel_for((size_t)(after->count - first), 16, gather_some, &new);
-            set_radiance(after, first, (const struct rgb(*)[SIDES])albedo, (const struct rgb(*)[2])light);
+            parallel_for((size_t)before->count, 4, gather_some, before);
+            find_albedos(albedo, things, before, (const struct rgb(*)[2])given, sums);
+            set_radiance(before, (const struct rgb(*)[SIDES])albedo);
+            parallel_for((size_t)after->count, 4, gather_some, after);
+            set_radiance(after, (const struct rgb(*)[SIDES])albedo);
         }
     } else
-        err_nomem(err, "the light of furniture", most * sizeof *light);
+        err_nomem(err, "the light of furniture", (count + 1) * sizeof *given);
     free(albedo);
     free(given);
-    free(light);
     free(sums);
-    free(keys);
-    free(counts);
     return err->status;
 }
 
 enum status thing_light_find(struct thing_surfaces *before, const struct light_field *was, struct thing_surfaces *after,
-                             int first, const struct light_field *is, struct err *err)
+                             int first, const struct light_field *is, double cube, struct err *err)
 {
+    struct parts old = {.s = before, .field = was, .cube = cube}, new = {.s = after, .field = is, .cube = cube};
     int things = 1;
     for (int i = 0; i < before->count; i++)
         if (before->thing[i] >= things) things = before->thing[i] + 1;
-    return find(before, was, after, first, is, things, err);
+    struct vec3 *lows = malloc((size_t)things * sizeof *lows);
+    if (!lows) return err_nomem(err, "furniture", (size_t)things * sizeof *lows);
+    if (!find_parts_before(&old, lows, things, err) && !find_parts_after(&new, first, &old, err))
+        find(&old, &new, things, err);
+    free(lows);
+    release_parts(&old);
+    release_parts(&new);
+    return err->status;
 }

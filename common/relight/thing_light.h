@@ -7,8 +7,9 @@
 
 /* Sets the radiance of both sides of the things of `before`, and of `after`, whose triangles begin at `first` of all,
  * from the light in their fields. The fields see these very radiances, which hold the means that photos show when this
- * is called. Same bits for any number of threads. ST_NOMEM. */
+ * is called. after: things of `before`, each with all of its triangles once for each of its places. cube: the width of
+ * what sends out alike. Same bits for any number of threads. ST_NOMEM. */
 enum status thing_light_find(struct thing_surfaces *before, const struct light_field *was, struct thing_surfaces *after,
-                             int first, const struct light_field *is, struct err *err);
+                             int first, const struct light_field *is, double cube, struct err *err);
 
 #endif
