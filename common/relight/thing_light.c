@@ -97,8 +97,10 @@ static enum status make_parts(struct parts *p, struct keyed *keyed, int count, s
     qsort(keyed, (size_t)count, sizeof *keyed, compare);
     for (int i = 0; i < count; i++) {
         const int triangle = p->list[i] = keyed[i].triangle;
-        if (!i || keyed[i].key != keyed[i - 1].key)
-            p->parts[p->count++] = (struct part){.first = i, .before = p->count, .thing = p->s->thing[triangle]};
+        if (!i || keyed[i].key != keyed[i - 1].key) {
+            p->parts[p->count] = (struct part){.first = i, .before = p->count, .thing = p->s->thing[triangle]};
+            p->count++;
+        }
         struct part *part = &p->parts[p->count - 1];
         part->count++;
         part->area += area_of(p->s, triangle);
