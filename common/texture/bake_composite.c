@@ -20,6 +20,7 @@
 #include "common/texture/bake.h"
 #include "common/texture/fill.h"
 #include "common/texture/filled_atlas.h"
+#include "common/texture/hole_bounds.h"
 #include "common/texture/hole_pieces.h"
 
 static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
@@ -46,6 +47,7 @@ struct composite { /* of a tile; all per texel */
     float *gradient[2], *weight[2]; /* to the right, below */
     int32_t *nearest, *queue;       /* the nearest seen texel */
     uint8_t *unseen, *clean;        /* no view shows the texel; some does, and it is not within RIM of an unseen one */
+    uint8_t *beyond;                /* it was filled beyond the colours around the hole */
     struct texture_fill fill;
     const struct level *level;
 };
@@ -339,6 +341,19 @@ static bool draw_to_guide(struct composite *c)
     return any;
 }
 
+/* Draws unseen texels to the colours around the hole where they lie beyond these; *any: somewhere. An atlas that is
+ * filled already has its own bounds. */
+static enum status draw_within_bounds(struct composite *c, bool *any, struct err *err)
+{
+    const struct synthesis_picture picture = {c->t->raster.width, c->t->raster.height, c->value, c->unseen, c->clean};
+    *any = false;
+    if (c->b->filled) return ST_OK;
+    if (hole_bounds_find(c->data, c->beyond, any, &picture, c->nearest, FURNITURE, err)) return err->status;
+    for (size_t i = 0; i < texels_of(c->t); i++)
+        if (c->beyond[i]) c->data_weight[i] = GUIDED;
+    return ST_OK;
+}
+
 /* Which texels are clean. */
 static void find_clean(struct composite *c)
 {
@@ -433,8 +448,11 @@ static enum status solve_tile(struct composite *c, struct bake_totals *totals, s
         texture_fill_find(&c->fill, &picture, err);
     if (err->status) return err->status;
     set_unseen(c, GRADIENT_FIXED);
-    if (solve(c, totals, err) || !draw_to_guide(c)) return err->status;
-    return solve(c, totals, err);
+    if (solve(c, totals, err)) return err->status;
+    const bool again = draw_to_guide(c);
+    bool beyond;
+    if (draw_within_bounds(c, &beyond, err)) return err->status;
+    return again || beyond ? solve(c, totals, err) : ST_OK;
 }
 
 static enum status composite_tile(struct bake *b, const struct bake_tile *t, const struct level *level,
@@ -444,7 +462,7 @@ static enum status composite_tile(struct bake *b, const struct bake_tile *t, con
     const size_t n = texels_of(t);
     float *memory = calloc(n, FLOATS * sizeof *memory);
     int32_t *indices = malloc(2 * n * sizeof *indices);
-    uint8_t *flags = malloc(3 * n);
+    uint8_t *flags = malloc(4 * n);
     if (!memory || !indices || !flags) {
         err_nomem(err, "a tile", n * FLOATS * sizeof *memory);
     } else {
@@ -454,6 +472,7 @@ static enum status composite_tile(struct bake *b, const struct bake_tile *t, con
                               .role = flags,
                               .unseen = flags + n,
                               .clean = flags + 2 * n,
+                              .beyond = flags + 3 * n,
                               .nearest = indices,
                               .queue = indices + n,
                               .data = memory,
