@@ -13,7 +13,10 @@
  * are rough, and most parts are small. Where an edit puts a thing, it has the parts and the sides that it had before.
  *
  * Mathematics. With A the area of a part, E its irradiance and L the mean radiance of its side, the albedo of a side is
- * pi sum(A L) / sum(A E), at most 0.95. */
+ * pi sum(A L) / sum(A E), at most 0.95. Photos hardly see a side that is turned to a wall or to the floor, and give it
+ * the mean of the thing: in the dark that seems nearly white. So a thing has an albedo too, that of a fit of pi L = a E
+ * to its sides by least squares, which the bright ones make. Where a side seems brighter than that, and its light e is
+ * less than the thing's, E, its albedo keeps (e / E)^2 of the difference. E is the mean of light weighted by light. */
 #include "common/relight/thing_light.h"
 
 #include <math.h>
@@ -51,8 +54,8 @@ struct keyed {
     int triangle;
 };
 
-struct side_sum {
-    struct rgb light, sent; /* area times irradiance, area times radiance */
+struct thing_sum {
+    double area[SIDES], light[3][SIDES], sent[3][SIDES]; /* light: area times irradiance; sent: area times radiance */
 };
 
 static struct vec3 cross_of(const struct thing_surfaces *s, int i)
@@ -211,27 +214,50 @@ static void gather_some(void *ctx, size_t begin, size_t end, int thread)
         for (int side = 0; side < 2; side++) p->parts[n].light[side] = light_of_part(p, &p->parts[n], side);
 }
 
-static double albedo_of(double sent, double light)
+static void add_to(double sums[3][SIDES], int side, struct rgb value)
 {
-    return light > 0 ? clamp(PI * sent / light, 0, LIGHT_ALBEDO_MAX) : 0;
+    sums[0][side] += value.r;
+    sums[1][side] += value.g;
+    sums[2][side] += value.b;
+}
+
+/* Of one channel. light, sent: of each side of a thing, with its area. */
+static void albedos_of(double albedo[SIDES], const double area[SIDES], const double light[SIDES],
+                       const double sent[SIDES])
+{
+    double sum = 0, squares = 0, products = 0;
+    for (int k = 0; k < SIDES; k++) {
+        if (!(area[k] > 0)) continue;
+        sum += light[k];
+        squares += light[k] * light[k] / area[k];
+        products += light[k] * sent[k] / area[k];
+    }
+    for (int k = 0; k < SIDES; k++) {
+        const double own = light[k] > 0 ? clamp(PI * sent[k] / light[k], 0, LIGHT_ALBEDO_MAX) : 0;
+        const double whole = squares > 0 ? clamp(PI * products / squares, 0, LIGHT_ALBEDO_MAX) : 0;
+        const double bright = area[k] > 0 && squares > 0 ? light[k] / area[k] * sum / squares : 0;
+        albedo[k] = own > whole && bright < 1 ? whole + bright * bright * (own - whole) : own;
+    }
 }
 
 /* given: the radiance of each triangle that photos show. */
 static void find_albedos(struct rgb (*albedo)[SIDES], int things, const struct parts *p, const struct rgb (*given)[2],
-                         struct side_sum *sums)
+                         struct thing_sum *sums)
 {
-    memset(sums, 0, (size_t)things * SIDES * sizeof *sums);
+    memset(sums, 0, (size_t)things * sizeof *sums);
     for (int k = 0; k < p->count; k++) {
         const struct part *part = &p->parts[k];
-        struct side_sum *sum = &sums[part->thing * SIDES + part->side];
-        sum->light = rgb_add(sum->light, rgb_scale(part->light[0], part->area));
+        struct thing_sum *sum = &sums[part->thing];
+        add_to(sum->light, part->side, rgb_scale(part->light[0], part->area));
+        sum->area[part->side] += part->area;
         for (int n = part->first; n < part->first + part->count; n++)
-            sum->sent = rgb_add(sum->sent, rgb_scale(given[p->list[n]][0], area_of(p->s, p->list[n])));
+            add_to(sum->sent, part->side, rgb_scale(given[p->list[n]][0], area_of(p->s, p->list[n])));
     }
-    for (int k = 0; k < things * SIDES; k++)
-        albedo[k / SIDES][k % SIDES] =
-            rgb_make(albedo_of(sums[k].sent.r, sums[k].light.r), albedo_of(sums[k].sent.g, sums[k].light.g),
-                     albedo_of(sums[k].sent.b, sums[k].light.b));
+    for (int k = 0; k < things; k++) {
+        double found[3][SIDES];
+        for (int c = 0; c < 3; c++) albedos_of(found[c], sums[k].area, sums[k].light[c], sums[k].sent[c]);
+        for (int i = 0; i < SIDES; i++) albedo[k][i] = rgb_make(found[0][i], found[1][i], found[2][i]);
+    }
 }
 
 static void set_radiance(const struct parts *p, const struct rgb (*albedo)[SIDES])
@@ -249,7 +275,7 @@ static enum status find(struct parts *before, struct parts *after, int things, s
     const size_t count = (size_t)before->s->count;
     struct rgb(*albedo)[SIDES] = calloc((size_t)things, sizeof *albedo);
     struct rgb(*given)[2] = malloc((count + 1) * sizeof *given);
-    struct side_sum *sums = malloc((size_t)things * SIDES * sizeof *sums);
+    struct thing_sum *sums = malloc((size_t)things * sizeof *sums);
     if (albedo && given && sums) {
         memcpy(given, before->s->radiance, count * sizeof *given);
         for (int round = 0; round < ROUNDS; round++) {
