@@ -69,6 +69,7 @@ struct before {
     struct plane *planes;
     bool *inherited, *off;
     const double *confidence;
+    const struct plane *level;
     int *number; /* of the thing's first segment, then of the node in the cut */
 };
 
@@ -91,6 +92,14 @@ static void join_things(struct before *x)
         }
 }
 
+/* Whether a segment still is about where other pictures matched it best. */
+static bool on_level(const struct before *x, int i)
+{
+    const struct segment *g = &x->p->m->segments->segments[i];
+    const double found = plane_at(x->level[i], g->cx, g->cy);
+    return found > 0 && fabs(plane_at(x->planes[i], g->cx, g->cy) - found) <= fmax(OFF_PART * found, x->p->step);
+}
+
 /* Gives things without evidence of two views their faces. */
 static enum status drop_things(struct before *x, struct err *err)
 {
@@ -105,7 +114,7 @@ static enum status drop_things(struct before *x, struct err *err)
         const int thing = root_of(x->number, i);
         pixels[thing] += s->segments[i].pixels;
         if (p->cross && !x->inherited[i] && x->confidence[i] >= DEPTH_INHERITED &&
-            cross_view_support(p->cross, i, x->planes[i]) >= AGREEING)
+            (on_level(x, i) || cross_view_support(p->cross, i, x->planes[i]) >= AGREEING))
             held[thing] += s->segments[i].pixels;
     }
     for (int i = 0; !err->status && i < s->count; i++) {
@@ -176,12 +185,16 @@ static enum status cut_things(struct before *x, struct err *err)
 }
 
 enum status before_model_settle(struct plane *planes, bool *inherited, const double *confidence,
-                                const struct plane_problem *p, struct err *err)
+                                const struct plane *level, const struct plane_problem *p, struct err *err)
 {
     const int count = p->m->segments->count;
-    struct before x = {p,          planes,
-                       inherited,  calloc((size_t)count + 1, sizeof *x.off),
-                       confidence, malloc(((size_t)count + 1) * sizeof *x.number)};
+    struct before x = {p,
+                       planes,
+                       inherited,
+                       calloc((size_t)count + 1, sizeof *x.off),
+                       confidence,
+                       level,
+                       malloc(((size_t)count + 1) * sizeof *x.number)};
     if (!x.off || !x.number) err_nomem(err, "things before the model", (size_t)count * 5);
     for (int i = 0; !err->status && i < count; i++) x.off[i] = !given_depth_has(p->given, i) && is_off(p, i, planes[i]);
     if (!err->status && !drop_things(&x, err)) cut_things(&x, err);

@@ -43,6 +43,7 @@
 #include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/level.h"
+#include "stages/segment_depth/levels.h"
 #include "stages/segment_depth/model_prior.h"
 #include "stages/segment_depth/pixel_planes.h"
 #include "stages/segment_depth/plane_sweep.h"
@@ -199,8 +200,9 @@ struct solution {
     double trust; /* in what straight edges say */
     struct plane ground;
     struct plane *planes;
-    double *distinct;  /* of each segment: distinctness() in the first round */
-    double *deviation; /* of each segment, of inverse depth: in the previous round, if there is one */
+    double *distinct;    /* of each segment: distinctness() in the first round */
+    double *deviation;   /* of each segment, of inverse depth: in the previous round, if there is one */
+    struct plane *level; /* of each segment: the plane of levels_find(); all zero: none */
     float *weights, *min_match;
 };
 
@@ -240,6 +242,8 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     if (!cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, x->sweep.step, &source,
                          err))
         read_previous_planes(x->planes, x->distinct, x->deviation, v, err);
+    if (v->source->model) x->problem.max_inverse_z = fmax(x->problem.max_inverse_z, levels_nearest(&x->problem));
+    if (!err->status && v->source->model) levels_find(x->planes, x->distinct, x->level, &x->problem, err);
     if (!err->status && v->source->model)
         model_prior_weigh(&x->prior, v->params->model_gain, x->distinct, s);
     else if (!err->status)
@@ -279,7 +283,8 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
     x->deviation = calloc(count, sizeof *x->deviation);
     x->weights = smooth_border_weights(s, v->params->segment_pixels);
     x->min_match = malloc(count * sizeof *x->min_match);
-    if (!x->planes || !x->distinct || !x->deviation || !x->weights || !x->min_match)
+    x->level = calloc(count, sizeof *x->level);
+    if (!x->planes || !x->distinct || !x->deviation || !x->level || !x->weights || !x->min_match)
         return err_nomem(err, "planes", (size_t)s->count * 48);
     plane_sweep_steps(&x->sweep, v->m, v->min_inverse_z, v->max_inverse_z, v->params);
     if (v->given) x->sweep.given = &x->given;
@@ -318,6 +323,7 @@ static void solution_release(struct solution *x)
     free(x->planes);
     free(x->distinct);
     free(x->deviation);
+    free(x->level);
     free(x->weights);
     free(x->min_match);
     cross_view_release(&x->cross);
@@ -330,7 +336,7 @@ static void solution_release(struct solution *x)
 /* Gives border areas that nothing holds the planes beside them, and what stands before the model without evidence the
  * model's depth, both without confidence. */
 static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
-                           bool cautious, bool knows_model, struct err *err)
+                           bool cautious, const struct plane *level, struct err *err)
 {
     const size_t count = (size_t)out->segment_count + 1;
     double *confidence = malloc(count * sizeof *confidence);
@@ -338,7 +344,7 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     if (!confidence || !inherited) err_nomem(err, "confidences", count * sizeof *confidence);
     for (int i = 0; !err->status && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
     if (!err->status) inherit_planes(planes, inherited, confidence, p, cautious, err);
-    if (!err->status && knows_model) before_model_settle(planes, inherited, confidence, p, err);
+    if (!err->status && level) before_model_settle(planes, inherited, confidence, level, p, err);
     for (int i = 0; !err->status && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
@@ -421,7 +427,8 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!err->status && !fill_segments(out, &x.problem, x.planes, x.distinct, err) &&
-        !inherit(out, x.planes, &x.problem, another_round(v), v->source->model, err) && !state_deviations(out, &x, err))
+        !inherit(out, x.planes, &x.problem, another_round(v), v->source->model ? x.level : NULL, err) &&
+        !state_deviations(out, &x, err))
         make_layers(out, &x, v, err);
     solution_release(&x);
     return err->status;

@@ -1,0 +1,304 @@
+/* levels.c - table tops and seats, found by planes that are level; see levels.h.
+ *
+ * Overview. A plane that is parallel to the floor and nearer has the floor's inverse depth times a factor. So factors
+ * are swept, of a fixed ratio: for each, all segments are matched on the floor's plane times it, as a whole. A segment
+ * gains what it matches better there than on its plane and on its face. Single segments of a few pixels match by
+ * chance somewhere, so gains are averaged with those of adjacent segments of similar colour. Connected segments that
+ * gain most at about the same factor are a surface if they are large enough; its factor is then refined.
+ *
+ * Source: sweeps along the directions of a scene [Gallup 2007]; the rest is new. */
+#include "stages/segment_depth/levels.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "common/base/parallel.h"
+#include "common/math/numbers.h"
+
+#define FIRST      0.94  /* distance of the farthest plane, relative to that of the face */
+#define STEP       2.5   /* ratio of distances, in pixels at 45 degrees */
+#define NEAREST    0.15  /* of the camera's height above the floor: distance of the nearest plane, and ... */
+#define SEEN_FROM  0.25  /* ... of the nearest point of it */
+#define BLANK      0.35f /* a segment that matches that well has no need of another plane */
+#define LEAST_GAIN 0.3f  /* of a segment on a surface, averaged */
+#define GOOD       0.55  /* largest matching cost of a surface */
+#define BEFORE     1.03  /* factor by which it must be nearer than its face */
+#define SMALLEST   0.001 /* part of the view that a surface fills at least */
+#define ALIKE      2     /* planes by which adjacent segments of a surface may differ */
+#define UPRIGHT    0.95  /* cosine between the normals of level planes and the vertical, at least, and ... */
+#define LEVEL      0.2   /* ... those of upright planes, at most */
+#define PARALLEL   0.999 /* cosine between normals that count as one */
+
+enum { AVERAGES = 3, MOST_PLANES = 256, REFINE = 8, MOST_DIRECTIONS = 8 };
+
+/* Planes with one normal: n . X = distance, X in the axes of the view. */
+struct direction {
+    struct vec3 normal; /* a unit vector */
+    double farthest;    /* distance */
+};
+
+struct sweep {
+    const struct plane_problem *p;
+    const struct plane *start; /* of each segment */
+    struct direction directions[MOST_DIRECTIONS];
+    int count, at; /* the direction that is swept */
+    double height; /* of the camera above the floor */
+    double ratio;
+    struct plane now; /* the plane that is tried */
+    float *own, *cost, *gain, *next, *best;
+    int *number; /* of the plane with each segment's best gain, in all directions, -1: none */
+};
+
+static const struct plane *face_of(const struct plane_problem *p, int i)
+{
+    return p->prior->expected[i] >= 0 ? &p->prior->planes[p->prior->expected[i]] : NULL;
+}
+
+/* The height of the camera above the floor that the view is expected to see; 0: none. */
+static double height_above_floor(const struct plane_problem *p)
+{
+    for (int k = 0; p->prior && k < p->prior->count; k++) {
+        const struct vec3 n = plane_normal(p->view, p->prior->planes[k]);
+        if (vec3_dot(n, p->down) > UPRIGHT * vec3_length(n)) return 1 / vec3_length(n);
+    }
+    return 0;
+}
+
+double levels_nearest(const struct plane_problem *p)
+{
+    const double height = height_above_floor(p);
+    return height > 0 ? 1 / (SEEN_FROM * height) : 0;
+}
+
+static void add_direction(struct sweep *s, struct vec3 normal, double farthest)
+{
+    for (int k = 0; k < s->count; k++)
+        if (vec3_dot(s->directions[k].normal, normal) > PARALLEL) {
+            s->directions[k].farthest = fmax(s->directions[k].farthest, farthest);
+            return;
+        }
+    if (s->count < MOST_DIRECTIONS) s->directions[s->count++] = (struct direction){normal, farthest};
+}
+
+/* Level planes below the camera, and upright ones parallel to the walls. */
+static void list_directions(struct sweep *s)
+{
+    const struct plane_prior *prior = s->p->prior;
+    for (int k = 0; k < prior->count; k++) {
+        const struct vec3 n = plane_normal(s->p->view, prior->planes[k]), unit = vec3_normalize(n);
+        const double down = vec3_dot(unit, s->p->down);
+        if (down > UPRIGHT || (fabs(down) < LEVEL && !getenv("ONLY"))) add_direction(s, unit, FIRST / vec3_length(n));
+    }
+}
+
+/* A direction's plane k. */
+static struct plane plane_of(const struct sweep *s, int direction, double k)
+{
+    const struct direction *d = &s->directions[direction];
+    return plane_of_normal(s->p->view, vec3_scale(d->normal, pow(s->ratio, k) / d->farthest));
+}
+
+static int plane_count(const struct sweep *s, int direction)
+{
+    const double range = s->directions[direction].farthest / (NEAREST * s->height);
+    return range > 1 ? (int)fmin(MOST_PLANES, log(range) / log(s->ratio)) : 0;
+}
+
+static bool may_lie(const struct sweep *s, int i, struct plane plane)
+{
+    const struct segment *g = &s->p->m->segments->segments[i];
+    const struct plane *face = face_of(s->p, i);
+    const double there = plane_at(plane, g->cx, g->cy);
+    return face && s->own[i] > BLANK && there > BEFORE * plane_at(*face, g->cx, g->cy) &&
+           plane_within(plane, g, s->p->min_inverse_z, s->p->max_inverse_z);
+}
+
+static void match_own(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct sweep *s = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const struct plane *face = face_of(s->p, (int)i);
+        s->own[i] = match_cost_sweep(s->p->m, (int)i, s->start[i], ~0u, NULL);
+        if (face) s->own[i] = fminf(s->own[i], match_cost_sweep(s->p->m, (int)i, *face, ~0u, NULL));
+    }
+}
+
+static void match_now(void *ctx, size_t begin, size_t end, int thread)
+{
+    struct sweep *s = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        s->cost[i] = may_lie(s, (int)i, s->now) ? match_cost_sweep(s->p->m, (int)i, s->now, ~0u, NULL) : NAN;
+        s->gain[i] = isnan(s->cost[i]) ? 0 : s->own[i] - s->cost[i];
+    }
+}
+
+/* Averages values with those of adjacent segments, as far as these are similar. */
+static void average(struct sweep *s, float **values, float **next)
+{
+    const struct segmentation *g = s->p->m->segments;
+    for (int i = 0; i < g->count; i++) {
+        float sum = (*values)[i] * (float)g->segments[i].pixels, weight = (float)g->segments[i].pixels;
+        for (int t = g->first_border[i]; t < g->first_border[i + 1]; t++) {
+            const int j = g->borders[t].other;
+            const float w = s->p->weights[t] * (float)g->segments[j].pixels;
+            sum += w * (*values)[j];
+            weight += w;
+        }
+        (*next)[i] = sum / weight;
+    }
+    float *swap = *values;
+    *values = *next;
+    *next = swap;
+}
+
+static void keep_best(struct sweep *s, int number)
+{
+    for (int i = 0; i < s->p->m->segments->count; i++) {
+        if (isnan(s->cost[i]) || !(s->gain[i] > s->best[i])) continue;
+        s->best[i] = s->gain[i];
+        s->number[i] = number;
+    }
+}
+
+/* ----------------------------------------------------------------------------------------------------------- surfaces
+ */
+
+struct surface {
+    int *members, count; /* into a list of all segments */
+    int pixels;
+    double factor;
+};
+
+static bool alike(const struct sweep *s, int i, int j)
+{
+    return s->number[i] >= 0 && s->number[j] >= 0 && s->number[i] / MOST_PLANES == s->number[j] / MOST_PLANES &&
+           abs(s->number[i] - s->number[j]) <= ALIKE;
+}
+
+/* Walks through the segments that are connected with list[0]; returns their number. */
+static int walk(const struct sweep *s, bool *walked, int *list)
+{
+    const struct segmentation *g = s->p->m->segments;
+    int end = 1;
+    walked[list[0]] = true;
+    for (int begin = 0; begin < end; begin++)
+        for (int t = g->first_border[list[begin]]; t < g->first_border[list[begin] + 1]; t++) {
+            const int j = g->borders[t].other;
+            if (walked[j] || !alike(s, list[begin], j)) continue;
+            walked[j] = true;
+            list[end++] = j;
+        }
+    return end;
+}
+
+/* The mean matching cost of a surface's pixels on a plane. */
+static double cost_of(const struct sweep *s, const int *list, int count, struct plane plane)
+{
+    double sum = 0, pixels = 0;
+    for (int n = 0; n < count; n++) {
+        const int size = s->p->m->segments->segments[list[n]].pixels;
+        sum += size * (double)match_cost_sweep(s->p->m, list[n], plane, ~0u, NULL);
+        pixels += size;
+    }
+    return sum / pixels;
+}
+
+/* The plane near a surface's mean one on which it matches best; *cost: there. */
+static struct plane refine(const struct sweep *s, const int *list, int count, double *cost)
+{
+    double sum = 0;
+    struct plane best = {0};
+    const int direction = s->number[list[0]] / MOST_PLANES;
+    for (int n = 0; n < count; n++) sum += s->number[list[n]] % MOST_PLANES;
+    *cost = INFINITY;
+    for (int k = -2 * REFINE; k <= 2 * REFINE; k++) {
+        const struct plane plane = plane_of(s, direction, sum / count + (double)k / REFINE);
+        const double c = cost_of(s, list, count, plane);
+        if (!(c < *cost)) continue;
+        *cost = c;
+        best = plane;
+    }
+    return best;
+}
+
+static enum status take_surfaces(struct plane *planes, double *distinct, struct plane *found, struct sweep *s,
+                                 struct err *err)
+{
+    const struct segmentation *g = s->p->m->segments;
+    bool *walked = calloc((size_t)g->count + 1, sizeof *walked);
+    int *list = malloc(((size_t)g->count + 1) * sizeof *list);
+    if (!walked || !list) err_nomem(err, "level surfaces", (size_t)g->count * 5);
+    for (int i = 0; !err->status && i < g->count; i++) {
+        double cost;
+        int pixels = 0;
+        if (walked[i] || s->number[i] < 0) continue;
+        list[0] = i;
+        const int count = walk(s, walked, list);
+        for (int n = 0; n < count; n++) pixels += g->segments[list[n]].pixels;
+        if (pixels < SMALLEST * g->width * g->height) continue;
+        const struct plane plane = refine(s, list, count, &cost);
+        if (getenv("LEVELS"))
+            fprintf(stderr, "%s surface at %.0f %.0f: %d px, direction %d distance %.3f, cost %.2f\n", s->p->view->name,
+                    g->segments[i].cx, g->segments[i].cy, pixels, s->number[i] / MOST_PLANES,
+                    1 / vec3_length(plane_normal(s->p->view, plane)), cost);
+        if (!(cost <= GOOD)) continue;
+        for (int n = 0; n < count; n++) {
+            planes[list[n]] = plane;
+            distinct[list[n]] = clamp((double)s->best[list[n]] / 0.4, 0, 1);
+            found[list[n]] = plane;
+        }
+    }
+    free(walked);
+    free(list);
+    return err->status;
+}
+
+static enum status sweep_init(struct sweep *s, struct err *err)
+{
+    const size_t count = (size_t)s->p->m->segments->count + 1;
+    float **lists[] = {&s->own, &s->cost, &s->gain, &s->next, &s->best};
+    for (int k = 0; k < 5; k++)
+        if (!(*lists[k] = calloc(count, sizeof **lists[k]))) return err_nomem(err, "level surfaces", count * 4);
+    if (!(s->number = malloc(count * sizeof *s->number))) return err_nomem(err, "level surfaces", count * 4);
+    return ST_OK;
+}
+
+static void sweep_release(struct sweep *s)
+{
+    free(s->own);
+    free(s->cost);
+    free(s->gain);
+    free(s->next);
+    free(s->best);
+    free(s->number);
+}
+
+enum status levels_find(struct plane *planes, double *distinct, struct plane *found, const struct plane_problem *p,
+                        struct err *err)
+{
+    const int count = p->m->segments->count;
+    struct sweep s = {.p = p, .start = planes, .height = height_above_floor(p), .ratio = 1 + STEP / p->view->fx};
+    if (!(s.height > 0) || sweep_init(&s, err)) {
+        sweep_release(&s);
+        return err->status;
+    }
+    list_directions(&s);
+    for (int i = 0; i < count; i++) {
+        s.number[i] = -1;
+        s.best[i] = LEAST_GAIN;
+    }
+    parallel_for((size_t)count, 64, match_own, &s);
+    for (int d = 0; d < s.count; d++)
+        for (int k = 0; k < plane_count(&s, d); k++) {
+            s.now = plane_of(&s, d, k);
+            parallel_for((size_t)count, 64, match_now, &s);
+            for (int n = 0; n < AVERAGES; n++) average(&s, &s.gain, &s.next);
+            keep_best(&s, d * MOST_PLANES + k);
+        }
+    take_surfaces(planes, distinct, found, &s, err);
+    sweep_release(&s);
+    return err->status;
+}
