@@ -3,8 +3,8 @@
  * A segment is off its face if its depth differs from that of the face. Adjacent segments off their faces whose planes
  * meet at the border are a thing.
  *
- * 1. A thing needs the evidence of two views: segments on whose depth AGREEING other views agree must make up HELD_PART
- *    of it. Else all of it takes its face.
+ * 1. A thing needs the evidence of two views: segments on whose depth AGREEING other views agree, or which other
+ *    pictures match (furniture_sweep.h), must make up HELD_PART of it. Else all of it takes its face.
  * 2. What remains is cut in two by a minimum cut [Boykov 2001]: a strip of ceiling beside a beam has taken the depth of
  *    the beam, and so became a part of it. A segment pays for the side that the evidence speaks against: the log odds
  *      1.5 - 2.5 confidence - 0.5 min(agreeing views, 3) + 8 (cost of its depth to other views - that of its face)
@@ -26,6 +26,7 @@
 #define MEET_STEPS 3.0  /* by which planes of one thing may differ at their border */
 #define AGREEING   0.9  /* other views, weighted with their confidence */
 #define HELD_PART  0.15 /* of a thing's pixels */
+#define SAME_PART  0.06 /* by which a plane may differ from the one that furniture_sweep_find() found */
 
 /* the log odds that a segment lies on its face */
 #define ODDS            1.5
@@ -69,7 +70,7 @@ struct before {
     struct plane *planes;
     bool *inherited, *off;
     const double *confidence;
-    const struct plane *level;
+    const struct plane *found;
     int *number; /* of the thing's first segment, then of the node in the cut */
 };
 
@@ -93,11 +94,11 @@ static void join_things(struct before *x)
 }
 
 /* Whether a segment still is about where other pictures matched it best. */
-static bool on_level(const struct before *x, int i)
+static bool still_found(const struct before *x, int i)
 {
     const struct segment *g = &x->p->m->segments->segments[i];
-    const double found = plane_at(x->level[i], g->cx, g->cy);
-    return found > 0 && fabs(plane_at(x->planes[i], g->cx, g->cy) - found) <= fmax(OFF_PART * found, x->p->step);
+    const double found = plane_at(x->found[i], g->cx, g->cy);
+    return found > 0 && fabs(plane_at(x->planes[i], g->cx, g->cy) - found) <= fmax(SAME_PART * found, x->p->step);
 }
 
 /* Gives things without evidence of two views their faces. */
@@ -114,7 +115,7 @@ static enum status drop_things(struct before *x, struct err *err)
         const int thing = root_of(x->number, i);
         pixels[thing] += s->segments[i].pixels;
         if (p->cross && !x->inherited[i] && x->confidence[i] >= DEPTH_INHERITED &&
-            (on_level(x, i) || cross_view_support(p->cross, i, x->planes[i]) >= AGREEING))
+            (still_found(x, i) || cross_view_support(p->cross, i, x->planes[i]) >= AGREEING))
             held[thing] += s->segments[i].pixels;
     }
     for (int i = 0; !err->status && i < s->count; i++) {
@@ -185,7 +186,7 @@ static enum status cut_things(struct before *x, struct err *err)
 }
 
 enum status before_model_settle(struct plane *planes, bool *inherited, const double *confidence,
-                                const struct plane *level, const struct plane_problem *p, struct err *err)
+                                const struct plane *found, const struct plane_problem *p, struct err *err)
 {
     const int count = p->m->segments->count;
     struct before x = {p,
@@ -193,7 +194,7 @@ enum status before_model_settle(struct plane *planes, bool *inherited, const dou
                        inherited,
                        calloc((size_t)count + 1, sizeof *x.off),
                        confidence,
-                       level,
+                       found,
                        malloc(((size_t)count + 1) * sizeof *x.number)};
     if (!x.off || !x.number) err_nomem(err, "things before the model", (size_t)count * 5);
     for (int i = 0; !err->status && i < count; i++) x.off[i] = !given_depth_has(p->given, i) && is_off(p, i, planes[i]);

@@ -5,8 +5,8 @@
 #include "stages/segment_depth/plane_problem.h"
 
 /* Moves what stands off the model without evidence to the plane that is expected there, and marks it as inherited. All
- * arrays: of each segment. p->weights: of the borders. ST_NOMEM. */
+ * arrays: of each segment; found: of furniture_sweep_find(). p->weights: of the borders. ST_NOMEM. */
 enum status before_model_settle(struct plane *planes, bool *inherited, const double *confidence,
-                                const struct plane *level, const struct plane_problem *p, struct err *err);
+                                const struct plane *found, const struct plane_problem *p, struct err *err);
 
 #endif

@@ -334,6 +334,8 @@ static enum status move_to_scene_planes(struct expander *x, struct err *err)
             if (round && k >= x->p->scene->known && k < fitted) refit_scene_plane(x, k, members);
             expansion_move(x, w, x->s->count, x->p->scene->planes[k], err);
         }
+    for (int k = 0; !err->status && x->p->furniture && k < x->p->furniture->count; k++)
+        expansion_move(x, w, x->s->count, x->p->furniture->planes[k], err);
     for (int i = 0; i < x->s->count; i++) w->local[i] = -1;
     free(members);
     return err->status;

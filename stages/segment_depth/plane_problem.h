@@ -41,11 +41,19 @@
 #include "stages/segment_depth/scene_planes.h"
 #include "stages/segment_depth/segment_params.h"
 
+#define FURNITURE_PLANES 12
+struct furniture_planes { /* of the largest surfaces that furniture_sweep.h found */
+    struct plane planes[FURNITURE_PLANES];
+    int pixels[FURNITURE_PLANES];
+    int count;
+};
+
 struct plane_problem { /* borrows all that it points to */
     const struct view *view;
     struct vec3 down; /* in the view's axes */
     const struct plane_families *families;
-    const struct plane_prior *prior; /* what segments are expected to lie on; NULL: nothing is known */
+    const struct furniture_planes *furniture; /* that are offered to the whole view; may be NULL */
+    const struct plane_prior *prior;          /* what segments are expected to lie on; NULL: nothing is known */
     const struct matcher *m;
     const struct point_evidence *points;
     const struct cross_view *cross;  /* NULL in the first round */

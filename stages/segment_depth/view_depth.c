@@ -8,6 +8,7 @@
  *   frame_prior   floor, ceiling and walls that straight edges show, where the view's rays meet them; or
  *   model_prior   the same of the faces of the solid model, in the round that knows it
  *   given_depth   fixed planes of the segments whose depth the user provides
+ *   furniture_sweep  tables and fronts that depth missed, before the faces, in the round that knows the model
  *   plane_sweep   first round: cost volume over the depth range, smoothed; later rounds start from the previous planes
  *   gravity       which way is down, from cameras and walls; and the ground, at the feet of what stands on it
  *   expand        expansion moves: minimum cuts over planes, slanted where that explains the pictures better; the
@@ -39,11 +40,11 @@
 #include "stages/segment_depth/depth_deviation.h"
 #include "stages/segment_depth/expand.h"
 #include "stages/segment_depth/frame_prior.h"
+#include "stages/segment_depth/furniture_sweep.h"
 #include "stages/segment_depth/gravity.h"
 #include "stages/segment_depth/inherit.h"
 #include "stages/segment_depth/layers.h"
 #include "stages/segment_depth/level.h"
-#include "stages/segment_depth/levels.h"
 #include "stages/segment_depth/model_prior.h"
 #include "stages/segment_depth/pixel_planes.h"
 #include "stages/segment_depth/plane_sweep.h"
@@ -200,9 +201,10 @@ struct solution {
     double trust; /* in what straight edges say */
     struct plane ground;
     struct plane *planes;
-    double *distinct;    /* of each segment: distinctness() in the first round */
-    double *deviation;   /* of each segment, of inverse depth: in the previous round, if there is one */
-    struct plane *level; /* of each segment: the plane of levels_find(); all zero: none */
+    double *distinct;  /* of each segment: distinctness() in the first round */
+    double *deviation; /* of each segment, of inverse depth: in the previous round, if there is one */
+    struct furniture_planes furniture;
+    struct plane *found; /* of each segment: the plane of furniture_sweep_find(); all zero: none */
     float *weights, *min_match;
 };
 
@@ -242,8 +244,11 @@ static enum status start_later_round(struct solution *x, const struct solver *v,
     if (!cross_view_make(&x->cross, s, v->set, v->view_idx, v->neighbours, v->neighbour_count, x->sweep.step, &source,
                          err))
         read_previous_planes(x->planes, x->distinct, x->deviation, v, err);
-    if (v->source->model) x->problem.max_inverse_z = fmax(x->problem.max_inverse_z, levels_nearest(&x->problem));
-    if (!err->status && v->source->model) levels_find(x->planes, x->distinct, x->level, &x->problem, err);
+    if (v->source->model)
+        x->problem.max_inverse_z = fmax(x->problem.max_inverse_z, furniture_sweep_nearest(&x->problem));
+    if (!err->status && v->source->model)
+        furniture_sweep_find(x->planes, x->distinct, x->found, &x->furniture, &x->problem, err);
+    x->problem.furniture = &x->furniture;
     if (!err->status && v->source->model)
         model_prior_weigh(&x->prior, v->params->model_gain, x->distinct, s);
     else if (!err->status)
@@ -283,8 +288,8 @@ static enum status start_solution(struct solution *x, const struct solver *v, st
     x->deviation = calloc(count, sizeof *x->deviation);
     x->weights = smooth_border_weights(s, v->params->segment_pixels);
     x->min_match = malloc(count * sizeof *x->min_match);
-    x->level = calloc(count, sizeof *x->level);
-    if (!x->planes || !x->distinct || !x->deviation || !x->level || !x->weights || !x->min_match)
+    x->found = calloc(count, sizeof *x->found);
+    if (!x->planes || !x->distinct || !x->deviation || !x->found || !x->weights || !x->min_match)
         return err_nomem(err, "planes", (size_t)s->count * 48);
     plane_sweep_steps(&x->sweep, v->m, v->min_inverse_z, v->max_inverse_z, v->params);
     if (v->given) x->sweep.given = &x->given;
@@ -323,7 +328,7 @@ static void solution_release(struct solution *x)
     free(x->planes);
     free(x->distinct);
     free(x->deviation);
-    free(x->level);
+    free(x->found);
     free(x->weights);
     free(x->min_match);
     cross_view_release(&x->cross);
@@ -336,7 +341,7 @@ static void solution_release(struct solution *x)
 /* Gives border areas that nothing holds the planes beside them, and what stands before the model without evidence the
  * model's depth, both without confidence. */
 static enum status inherit(struct layered_depth *out, struct plane *planes, const struct plane_problem *p,
-                           bool cautious, const struct plane *level, struct err *err)
+                           bool cautious, const struct plane *found, struct err *err)
 {
     const size_t count = (size_t)out->segment_count + 1;
     double *confidence = malloc(count * sizeof *confidence);
@@ -344,7 +349,7 @@ static enum status inherit(struct layered_depth *out, struct plane *planes, cons
     if (!confidence || !inherited) err_nomem(err, "confidences", count * sizeof *confidence);
     for (int i = 0; !err->status && i < out->segment_count; i++) confidence[i] = out->segments[i].confidence;
     if (!err->status) inherit_planes(planes, inherited, confidence, p, cautious, err);
-    if (!err->status && level) before_model_settle(planes, inherited, confidence, level, p, err);
+    if (!err->status && found) before_model_settle(planes, inherited, confidence, found, p, err);
     for (int i = 0; !err->status && i < out->segment_count; i++)
         if (inherited[i]) {
             struct depth_segment *g = &out->segments[i];
@@ -422,12 +427,14 @@ static enum status solve(struct layered_depth *out, const struct solver *v, stru
     const struct plane_sweep *sweep = &x.sweep;
     if (!start_solution(&x, v, err) && !expand_planes(x.planes, &x.problem, err))
         refine_planes(x.planes, &x.problem, err);
+
+    if (!err->status) furniture_sweep_extend(x.distinct, x.found, x.planes, &x.problem);
     for (int i = 0; !err->status && !v->source->read_depth && i < s->count; i++)
         x.distinct[i] = distinctness(
             sweep->cost + (size_t)i * (size_t)sweep->planes, sweep->planes,
             (plane_at(x.planes[i], s->segments[i].cx, s->segments[i].cy) - sweep->min_inverse_z) / sweep->step);
     if (!err->status && !fill_segments(out, &x.problem, x.planes, x.distinct, err) &&
-        !inherit(out, x.planes, &x.problem, another_round(v), v->source->model ? x.level : NULL, err) &&
+        !inherit(out, x.planes, &x.problem, another_round(v), v->source->model ? x.found : NULL, err) &&
         !state_deviations(out, &x, err))
         make_layers(out, &x, v, err);
     solution_release(&x);

@@ -18,8 +18,9 @@ static int pixel[W * H], label[W * H];
 static struct border borders[COUNT * 4];
 static int first_border[COUNT + 1];
 static struct view views[VIEWS];
-static double confidence_before; /* of the neighbours' depth */
-static int thing_ends;           /* the neighbours show the thing left of this column, and the wall from there on */
+static double confidence_before;  /* of the neighbours' depth */
+static int thing_ends;            /* the neighbours show the thing left of this column, and the wall from there on */
+static struct plane found[COUNT]; /* planes of furniture_sweep_find() */
 
 /* A grid of square segments. */
 static struct segmentation grid(void)
@@ -201,7 +202,7 @@ static int settle(double sure, double neighbours_sure, int ends)
     planes[0].c *= 1.01; /* a little off: the photos may know better */
     confidence[FIRST] = sure;
     const double slightly_off = planes[0].c;
-    assert_ok(before_model_settle(planes, inherited, confidence, &p, &err), err);
+    assert_ok(before_model_settle(planes, inherited, confidence, found, &p, &err), err);
     assert_true(planes[0].c == slightly_off && !inherited[0]);
     int stay = 0;
     for (int i = FIRST; i <= SECOND; i++) {
@@ -221,6 +222,17 @@ static void what_no_other_view_confirms_is_the_face_behind_it(void **state)
     (void)state;
     assert_int_equal(settle(0.9, 0.05, W), 0);
     assert_int_equal(settle(0, 0.9, W), 0);
+}
+
+/* Other pictures matched it there, although the other views' depth does not show it. */
+static void a_thing_that_other_pictures_match_stays(void **state)
+{
+    (void)state;
+    found[FIRST] = found[SECOND] = (struct plane){0, 0, 1 / thing};
+    assert_int_equal(settle(0.9, 0.05, W), 2);
+    found[FIRST] = found[SECOND] = (struct plane){0, 0, 1 / (0.9 * thing)}; /* it left that plane since */
+    assert_int_equal(settle(0.9, 0.05, W), 0);
+    memset(found, 0, sizeof found);
 }
 
 /* The second segment has no confidence of its own. */
@@ -245,6 +257,7 @@ int main(void)
         cmocka_unit_test(walls_without_a_room_have_a_floor_and_a_ceiling),
         cmocka_unit_test(a_sure_segment_gains_less),
         cmocka_unit_test(what_no_other_view_confirms_is_the_face_behind_it),
+        cmocka_unit_test(a_thing_that_other_pictures_match_stays),
         cmocka_unit_test(a_thing_that_views_agree_on_stays_with_all_its_parts),
         cmocka_unit_test(a_strip_of_wall_beside_a_thing_goes_back_to_the_wall),
     };

@@ -1,23 +1,24 @@
-/* levels.c - table tops and seats, found by planes that are level; see levels.h.
+/* furniture_sweep.c - tables, seats and fronts of furniture, found by planes before the faces of the model; see furniture_sweep.h.
  *
- * Overview. A plane that is parallel to the floor and nearer has the floor's inverse depth times a factor. So factors
- * are swept, of a fixed ratio: for each, all segments are matched on the floor's plane times it, as a whole. A segment
- * gains what it matches better there than on its plane and on its face. Single segments of a few pixels match by
- * chance somewhere, so gains are averaged with those of adjacent segments of similar colour. Connected segments that
- * gain most at about the same factor are a surface if they are large enough; its factor is then refined.
+ * Overview. Sparse points are rare on furniture, so that the range of depths that they give may end behind a table; and
+ * where it does not, planes of constant depth match no table top that is seen at a grazing angle. But furniture is
+ * level, or parallel to walls. So planes parallel to the floor, and to the walls that the view sees, are swept towards
+ * the camera, their distances in a fixed ratio. A segment gains what it matches better there than on its own plane and
+ * on its face. Single segments of a few pixels match by chance somewhere, so gains are averaged with those of adjacent
+ * segments of similar colour. Connected segments that gain most on about the same plane are a surface if they are large
+ * enough and match well; its distance is then refined.
  *
  * Source: sweeps along the directions of a scene [Gallup 2007]; the rest is new. */
-#include "stages/segment_depth/levels.h"
+#include "stages/segment_depth/furniture_sweep.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 
 #include "common/base/parallel.h"
 #include "common/math/numbers.h"
 
 #define FIRST      0.94  /* distance of the farthest plane, relative to that of the face */
-#define STEP       2.5   /* ratio of distances, in pixels at 45 degrees */
+#define STEP       2.5   /* of the distances, as part of them, in pixels of the focal length */
 #define NEAREST    0.15  /* of the camera's height above the floor: distance of the nearest plane, and ... */
 #define SEEN_FROM  0.25  /* ... of the nearest point of it */
 #define BLANK      0.35f /* a segment that matches that well has no need of another plane */
@@ -25,26 +26,30 @@
 #define GOOD       0.55  /* largest matching cost of a surface */
 #define BEFORE     1.03  /* factor by which it must be nearer than its face */
 #define SMALLEST   0.001 /* part of the view that a surface fills at least */
+#define DISTINCT   0.4   /* gain of a segment that matches distinctly */
+#define SAME       0.01  /* part of the inverse depth by which a segment may be off a plane and lie on it */
 #define ALIKE      2     /* planes by which adjacent segments of a surface may differ */
 #define UPRIGHT    0.95  /* cosine between the normals of level planes and the vertical, at least, and ... */
 #define LEVEL      0.2   /* ... those of upright planes, at most */
 #define PARALLEL   0.999 /* cosine between normals that count as one */
 
+enum { SEEN_BY = 2 }; /* other views, at least, see a segment where it is found */
 enum { AVERAGES = 3, MOST_PLANES = 256, REFINE = 8, MOST_DIRECTIONS = 8 };
 
 /* Planes with one normal: n . X = distance, X in the axes of the view. */
 struct direction {
     struct vec3 normal; /* a unit vector */
     double farthest;    /* distance */
+    double ratio;       /* of the distances of successive planes */
+    int planes;
 };
 
 struct sweep {
     const struct plane_problem *p;
     const struct plane *start; /* of each segment */
     struct direction directions[MOST_DIRECTIONS];
-    int count, at; /* the direction that is swept */
-    double height; /* of the camera above the floor */
-    double ratio;
+    int count;
+    double height;    /* of the camera above the floor */
     struct plane now; /* the plane that is tried */
     float *own, *cost, *gain, *next, *best;
     int *number; /* of the plane with each segment's best gain, in all directions, -1: none */
@@ -65,7 +70,7 @@ static double height_above_floor(const struct plane_problem *p)
     return 0;
 }
 
-double levels_nearest(const struct plane_problem *p)
+double furniture_sweep_nearest(const struct plane_problem *p)
 {
     const double height = height_above_floor(p);
     return height > 0 ? 1 / (SEEN_FROM * height) : 0;
@@ -78,7 +83,8 @@ static void add_direction(struct sweep *s, struct vec3 normal, double farthest)
             s->directions[k].farthest = fmax(s->directions[k].farthest, farthest);
             return;
         }
-    if (s->count < MOST_DIRECTIONS) s->directions[s->count++] = (struct direction){normal, farthest};
+    if (s->count < MOST_DIRECTIONS)
+        s->directions[s->count++] = (struct direction){.normal = normal, .farthest = farthest};
 }
 
 /* Level planes below the camera, and upright ones parallel to the walls. */
@@ -88,21 +94,22 @@ static void list_directions(struct sweep *s)
     for (int k = 0; k < prior->count; k++) {
         const struct vec3 n = plane_normal(s->p->view, prior->planes[k]), unit = vec3_normalize(n);
         const double down = vec3_dot(unit, s->p->down);
-        if (down > UPRIGHT || (fabs(down) < LEVEL && !getenv("ONLY"))) add_direction(s, unit, FIRST / vec3_length(n));
+        if (down > UPRIGHT || fabs(down) < LEVEL) add_direction(s, unit, FIRST / vec3_length(n));
     }
+}
+
+static void set_steps(struct direction *d, double nearest, double focal)
+{
+    const double range = fmax(1, d->farthest / nearest);
+    d->ratio = fmax(1 + STEP / focal, pow(range, 1.0 / MOST_PLANES));
+    d->planes = (int)fmin(MOST_PLANES, ceil(log(range) / log(d->ratio)));
 }
 
 /* A direction's plane k. */
 static struct plane plane_of(const struct sweep *s, int direction, double k)
 {
     const struct direction *d = &s->directions[direction];
-    return plane_of_normal(s->p->view, vec3_scale(d->normal, pow(s->ratio, k) / d->farthest));
-}
-
-static int plane_count(const struct sweep *s, int direction)
-{
-    const double range = s->directions[direction].farthest / (NEAREST * s->height);
-    return range > 1 ? (int)fmin(MOST_PLANES, log(range) / log(s->ratio)) : 0;
+    return plane_of_normal(s->p->view, vec3_scale(d->normal, pow(d->ratio, k) / d->farthest));
 }
 
 static bool may_lie(const struct sweep *s, int i, struct plane plane)
@@ -130,7 +137,9 @@ static void match_now(void *ctx, size_t begin, size_t end, int thread)
     struct sweep *s = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++) {
-        s->cost[i] = may_lie(s, (int)i, s->now) ? match_cost_sweep(s->p->m, (int)i, s->now, ~0u, NULL) : NAN;
+        unsigned seen = 0;
+        s->cost[i] = may_lie(s, (int)i, s->now) ? match_cost_sweep(s->p->m, (int)i, s->now, ~0u, &seen) : NAN;
+        if (__builtin_popcount(seen) < SEEN_BY) s->cost[i] = NAN; /* what leaves the other pictures costs little */
         s->gain[i] = isnan(s->cost[i]) ? 0 : s->own[i] - s->cost[i];
     }
 }
@@ -200,7 +209,9 @@ static double cost_of(const struct sweep *s, const int *list, int count, struct 
     double sum = 0, pixels = 0;
     for (int n = 0; n < count; n++) {
         const int size = s->p->m->segments->segments[list[n]].pixels;
-        sum += size * (double)match_cost_sweep(s->p->m, list[n], plane, ~0u, NULL);
+        float cost;
+        if (match_evidence(s->p->m, list[n], plane, 0, &cost) < SEEN_BY) cost = MATCH_CHANCE;
+        sum += size * (double)cost;
         pixels += size;
     }
     return sum / pixels;
@@ -224,13 +235,27 @@ static struct plane refine(const struct sweep *s, const int *list, int count, do
     return best;
 }
 
-static enum status take_surfaces(struct plane *planes, double *distinct, struct plane *found, struct sweep *s,
-                                 struct err *err)
+/* Adds a plane to the list, in place of that of the smallest surface if it is full. */
+static void add_plane(struct furniture_planes *list, struct plane plane, int pixels)
+{
+    int at = list->count;
+    if (list->count < FURNITURE_PLANES)
+        list->count++;
+    else
+        for (int k = at = 0; k < list->count; k++)
+            if (list->pixels[k] < list->pixels[at]) at = k;
+    if (pixels <= list->pixels[at]) return;
+    list->planes[at] = plane;
+    list->pixels[at] = pixels;
+}
+
+static enum status take_surfaces(struct plane *planes, double *distinct, struct plane *found,
+                                 struct furniture_planes *largest, struct sweep *s, struct err *err)
 {
     const struct segmentation *g = s->p->m->segments;
     bool *walked = calloc((size_t)g->count + 1, sizeof *walked);
     int *list = malloc(((size_t)g->count + 1) * sizeof *list);
-    if (!walked || !list) err_nomem(err, "level surfaces", (size_t)g->count * 5);
+    if (!walked || !list) err_nomem(err, "surfaces of furniture", (size_t)g->count * 5);
     for (int i = 0; !err->status && i < g->count; i++) {
         double cost;
         int pixels = 0;
@@ -240,14 +265,11 @@ static enum status take_surfaces(struct plane *planes, double *distinct, struct 
         for (int n = 0; n < count; n++) pixels += g->segments[list[n]].pixels;
         if (pixels < SMALLEST * g->width * g->height) continue;
         const struct plane plane = refine(s, list, count, &cost);
-        if (getenv("LEVELS"))
-            fprintf(stderr, "%s surface at %.0f %.0f: %d px, direction %d distance %.3f, cost %.2f\n", s->p->view->name,
-                    g->segments[i].cx, g->segments[i].cy, pixels, s->number[i] / MOST_PLANES,
-                    1 / vec3_length(plane_normal(s->p->view, plane)), cost);
         if (!(cost <= GOOD)) continue;
+        add_plane(largest, plane, pixels);
         for (int n = 0; n < count; n++) {
             planes[list[n]] = plane;
-            distinct[list[n]] = clamp((double)s->best[list[n]] / 0.4, 0, 1);
+            distinct[list[n]] = clamp((double)s->best[list[n]] / DISTINCT, 0, 1);
             found[list[n]] = plane;
         }
     }
@@ -261,8 +283,8 @@ static enum status sweep_init(struct sweep *s, struct err *err)
     const size_t count = (size_t)s->p->m->segments->count + 1;
     float **lists[] = {&s->own, &s->cost, &s->gain, &s->next, &s->best};
     for (int k = 0; k < 5; k++)
-        if (!(*lists[k] = calloc(count, sizeof **lists[k]))) return err_nomem(err, "level surfaces", count * 4);
-    if (!(s->number = malloc(count * sizeof *s->number))) return err_nomem(err, "level surfaces", count * 4);
+        if (!(*lists[k] = calloc(count, sizeof **lists[k]))) return err_nomem(err, "surfaces of furniture", count * 4);
+    if (!(s->number = malloc(count * sizeof *s->number))) return err_nomem(err, "surfaces of furniture", count * 4);
     return ST_OK;
 }
 
@@ -276,11 +298,11 @@ static void sweep_release(struct sweep *s)
     free(s->number);
 }
 
-enum status levels_find(struct plane *planes, double *distinct, struct plane *found, const struct plane_problem *p,
-                        struct err *err)
+enum status furniture_sweep_find(struct plane *planes, double *distinct, struct plane *found,
+                                 struct furniture_planes *largest, const struct plane_problem *p, struct err *err)
 {
     const int count = p->m->segments->count;
-    struct sweep s = {.p = p, .start = planes, .height = height_above_floor(p), .ratio = 1 + STEP / p->view->fx};
+    struct sweep s = {.p = p, .start = planes, .height = height_above_floor(p)};
     if (!(s.height > 0) || sweep_init(&s, err)) {
         sweep_release(&s);
         return err->status;
@@ -291,14 +313,35 @@ enum status levels_find(struct plane *planes, double *distinct, struct plane *fo
         s.best[i] = LEAST_GAIN;
     }
     parallel_for((size_t)count, 64, match_own, &s);
-    for (int d = 0; d < s.count; d++)
-        for (int k = 0; k < plane_count(&s, d); k++) {
+    for (int d = 0; d < s.count; d++) {
+        set_steps(&s.directions[d], NEAREST * s.height, p->view->fx);
+        for (int k = 0; k < s.directions[d].planes; k++) {
             s.now = plane_of(&s, d, k);
             parallel_for((size_t)count, 64, match_now, &s);
             for (int n = 0; n < AVERAGES; n++) average(&s, &s.gain, &s.next);
             keep_best(&s, d * MOST_PLANES + k);
         }
-    take_surfaces(planes, distinct, found, &s, err);
+    }
+    take_surfaces(planes, distinct, found, largest, &s, err);
     sweep_release(&s);
     return err->status;
+}
+
+void furniture_sweep_extend(double *distinct, struct plane *found, const struct plane *planes,
+                            const struct plane_problem *p)
+{
+    for (int i = 0; p->furniture && i < p->m->segments->count; i++) {
+        const struct segment *g = &p->m->segments->segments[i];
+        const struct plane *face = face_of(p, i);
+        const double at = plane_at(planes[i], g->cx, g->cy);
+        bool still_found = false;
+        for (int k = 0; k < p->furniture->count; k++)
+            still_found |= fabs(plane_at(p->furniture->planes[k], g->cx, g->cy) - at) <= SAME * at;
+        if (!face || !still_found || plane_at(found[i], g->cx, g->cy) > 0) continue;
+        const float gain =
+            match_cost_sweep(p->m, i, *face, ~0u, NULL) - match_cost_sweep(p->m, i, planes[i], ~0u, NULL);
+        if (!(gain >= LEAST_GAIN) || !(at > BEFORE * plane_at(*face, g->cx, g->cy))) continue;
+        distinct[i] = fmax(distinct[i], clamp((double)gain / DISTINCT, 0, 1));
+        found[i] = planes[i];
+    }
 }
