@@ -9,7 +9,8 @@
  *    the beam, and so became a part of it. A segment pays for the side that the evidence speaks against: the log odds
  *      1.5 - 2.5 confidence - 0.5 min(agreeing views, 3) + 8 (cost of its depth to other views - that of its face)
  *          - 4 min(steps off its face, 20) / 20
- *    that it lies on its face. Borders between segments of a similar colour pay if they are cut: within a thing where
+ *    that it lies on its face, without the last term where a thing is held by pictures and the segment by nothing.
+ *    Borders between segments of a similar colour pay if they are cut: within a thing where
  *    its planes meet, and, twice as much, between a thing and what lies on its face beside it.
  * What takes its face has no confidence. decisions/0083 says how the numbers were found. */
 #include "stages/segment_depth/before_model.h"
@@ -30,6 +31,7 @@
 
 /* the log odds that a segment lies on its face */
 #define ODDS            1.5
+#define ODDS_DOUBTFUL   0.7 /* in place of those and the gap's, of what is doubtful */
 #define ODDS_CONFIDENCE 2.5
 #define ODDS_AGREEING   0.5 /* of each other view, of at most ... */
 #define MOST_AGREEING   3.0
@@ -71,7 +73,8 @@ struct before {
     bool *inherited, *off;
     const double *confidence;
     const struct plane *found;
-    int *number; /* of the thing's first segment, then of the node in the cut */
+    bool *doubtful; /* part of a thing that is held by what pictures match, and itself held by nothing */
+    int *number;    /* of the thing's first segment, then of the node in the cut */
 };
 
 static void take_face(struct before *x, int i)
@@ -101,27 +104,38 @@ static bool still_found(const struct before *x, int i)
     return found > 0 && fabs(plane_at(x->planes[i], g->cx, g->cy) - found) <= fmax(SAME_PART * found, x->p->step);
 }
 
+/* Whether other views agree on a segment's depth. */
+static bool is_agreed_on(const struct before *x, int i)
+{
+    const struct plane_problem *p = x->p;
+    return p->cross && !x->inherited[i] && x->confidence[i] >= DEPTH_INHERITED &&
+           cross_view_support(p->cross, i, x->planes[i]) >= AGREEING;
+}
+
 /* Gives things without evidence of two views their faces. */
 static enum status drop_things(struct before *x, struct err *err)
 {
-    const struct plane_problem *p = x->p;
-    const struct segmentation *s = p->m->segments;
-    double *pixels = calloc((size_t)s->count + 1, sizeof *pixels), *held = calloc((size_t)s->count + 1, sizeof *held);
-    if (!pixels || !held) err_nomem(err, "things before the model", (size_t)s->count * 16);
+    const struct segmentation *s = x->p->m->segments;
+    const size_t n = (size_t)s->count + 1;
+    double *pixels = calloc(n, sizeof *pixels), *held = calloc(n, sizeof *held), *agreed = calloc(n, sizeof *agreed);
+    if (!pixels || !held || !agreed) err_nomem(err, "things before the model", n * 24);
     for (int i = 0; !err->status && i < s->count; i++) x->number[i] = i;
     if (!err->status) join_things(x);
     for (int i = 0; !err->status && i < s->count; i++) {
         if (!x->off[i]) continue;
         const int thing = root_of(x->number, i);
         pixels[thing] += s->segments[i].pixels;
-        if (p->cross && !x->inherited[i] && x->confidence[i] >= DEPTH_INHERITED &&
-            (still_found(x, i) || cross_view_support(p->cross, i, x->planes[i]) >= AGREEING))
-            held[thing] += s->segments[i].pixels;
+        const bool is_agreed = is_agreed_on(x, i);
+        if (is_agreed) agreed[thing] += s->segments[i].pixels;
+        if (is_agreed || still_found(x, i)) held[thing] += s->segments[i].pixels;
+        x->doubtful[i] = !is_agreed && !still_found(x, i);
     }
     for (int i = 0; !err->status && i < s->count; i++) {
         const int thing = root_of(x->number, i);
         if (x->off[i] && !(held[thing] >= HELD_PART * pixels[thing])) take_face(x, i);
+        if (agreed[thing] >= HELD_PART * pixels[thing]) x->doubtful[i] = false;
     }
+    free(agreed);
     free(pixels);
     free(held);
     return err->status;
@@ -134,7 +148,7 @@ static double odds_of_face(const struct before *x, int i)
     const struct segment *g = &p->m->segments->segments[i];
     const struct plane own = x->planes[i], face = *problem_expects(p, i);
     const double gap = fabs(plane_at(own, g->cx, g->cy) - plane_at(face, g->cx, g->cy)) / p->step;
-    double odds = ODDS - ODDS_GAP * fmin(gap / FAR_STEPS, 1);
+    double odds = x->doubtful[i] ? ODDS_DOUBTFUL : ODDS - ODDS_GAP * fmin(gap / FAR_STEPS, 1);
     unsigned occluded;
     if (!x->inherited[i]) odds -= ODDS_CONFIDENCE * x->confidence[i];
     if (!p->cross) return odds;
@@ -195,11 +209,13 @@ enum status before_model_settle(struct plane *planes, bool *inherited, const dou
                        calloc((size_t)count + 1, sizeof *x.off),
                        confidence,
                        found,
+                       calloc((size_t)count + 1, sizeof *x.doubtful),
                        malloc(((size_t)count + 1) * sizeof *x.number)};
-    if (!x.off || !x.number) err_nomem(err, "things before the model", (size_t)count * 5);
+    if (!x.off || !x.number || !x.doubtful) err_nomem(err, "things before the model", (size_t)count * 5);
     for (int i = 0; !err->status && i < count; i++) x.off[i] = !given_depth_has(p->given, i) && is_off(p, i, planes[i]);
     if (!err->status && !drop_things(&x, err)) cut_things(&x, err);
     free(x.off);
     free(x.number);
+    free(x.doubtful);
     return err->status;
 }

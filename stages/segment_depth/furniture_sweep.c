@@ -1,4 +1,4 @@
-/* furniture_sweep.c - tables, seats and fronts of furniture, found by planes before the faces of the model; see furniture_sweep.h.
+/* furniture_sweep.c - tables, seats and fronts of furniture, by planes before the faces of the model.
  *
  * Overview. Sparse points are rare on furniture, so that the range of depths that they give may end behind a table; and
  * where it does not, planes of constant depth match no table top that is seen at a grazing angle. But furniture is
@@ -6,7 +6,8 @@
  * the camera, their distances in a fixed ratio. A segment gains what it matches better there than on its own plane and
  * on its face. Single segments of a few pixels match by chance somewhere, so gains are averaged with those of adjacent
  * segments of similar colour. Connected segments that gain most on about the same plane are a surface if they are large
- * enough and match well; its distance is then refined.
+ * enough and match well; its distance is then refined. Surfaces that depth had found by itself count alike, on the
+ * planes that they have: other views may have missed them.
  *
  * Source: sweeps along the directions of a scene [Gallup 2007]; the rest is new. */
 #include "stages/segment_depth/furniture_sweep.h"
@@ -33,7 +34,8 @@
 #define LEVEL      0.2   /* ... those of upright planes, at most */
 #define PARALLEL   0.999 /* cosine between normals that count as one */
 
-enum { SEEN_BY = 2 }; /* other views, at least, see a segment where it is found */
+enum { SEEN_BY = 2 };   /* other views, at least, see a segment where it is found */
+enum { OWN = 1 << 20 }; /* number of a segment's own plane, as depth found it before */
 enum { AVERAGES = 3, MOST_PLANES = 256, REFINE = 8, MOST_DIRECTIONS = 8 };
 
 /* Planes with one normal: n . X = distance, X in the axes of the view. */
@@ -51,8 +53,10 @@ struct sweep {
     int count;
     double height;    /* of the camera above the floor */
     struct plane now; /* the plane that is tried */
-    float *own, *cost, *gain, *next, *best;
-    int *number; /* of the plane with each segment's best gain, in all directions, -1: none */
+    float *own;       /* matching cost on the segment's own plane or on its face, whichever is less */
+    float *cost, *gain, *next, *best;
+    float *own_gain; /* of the own plane over the face, averaged */
+    int *number;     /* of the plane with each segment's best gain, in all directions; OWN; -1: none */
 };
 
 static const struct plane *face_of(const struct plane_problem *p, int i)
@@ -112,13 +116,17 @@ static struct plane plane_of(const struct sweep *s, int direction, double k)
     return plane_of_normal(s->p->view, vec3_scale(d->normal, pow(d->ratio, k) / d->farthest));
 }
 
-static bool may_lie(const struct sweep *s, int i, struct plane plane)
+static bool is_before(const struct sweep *s, int i, struct plane plane)
 {
     const struct segment *g = &s->p->m->segments->segments[i];
     const struct plane *face = face_of(s->p, i);
-    const double there = plane_at(plane, g->cx, g->cy);
-    return face && s->own[i] > BLANK && there > BEFORE * plane_at(*face, g->cx, g->cy) &&
-           plane_within(plane, g, s->p->min_inverse_z, s->p->max_inverse_z);
+    return face && plane_at(plane, g->cx, g->cy) > BEFORE * plane_at(*face, g->cx, g->cy);
+}
+
+static bool may_lie(const struct sweep *s, int i, struct plane plane)
+{
+    return s->own[i] > BLANK && is_before(s, i, plane) &&
+           plane_within(plane, &s->p->m->segments->segments[i], s->p->min_inverse_z, s->p->max_inverse_z);
 }
 
 static void match_own(void *ctx, size_t begin, size_t end, int thread)
@@ -127,8 +135,13 @@ static void match_own(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         const struct plane *face = face_of(s->p, (int)i);
-        s->own[i] = match_cost_sweep(s->p->m, (int)i, s->start[i], ~0u, NULL);
-        if (face) s->own[i] = fminf(s->own[i], match_cost_sweep(s->p->m, (int)i, *face, ~0u, NULL));
+        unsigned seen = 0;
+        s->own[i] = match_cost_sweep(s->p->m, (int)i, s->start[i], ~0u, &seen);
+        if (!face) continue;
+        const float there = match_cost_sweep(s->p->m, (int)i, *face, ~0u, NULL);
+        if (is_before(s, (int)i, s->start[i]) && __builtin_popcount(seen) >= SEEN_BY)
+            s->own_gain[i] = there - s->own[i];
+        s->own[i] = fminf(s->own[i], there);
     }
 }
 
@@ -175,12 +188,6 @@ static void keep_best(struct sweep *s, int number)
 /* ----------------------------------------------------------------------------------------------------------- surfaces
  */
 
-struct surface {
-    int *members, count; /* into a list of all segments */
-    int pixels;
-    double factor;
-};
-
 static bool alike(const struct sweep *s, int i, int j)
 {
     return s->number[i] >= 0 && s->number[j] >= 0 && s->number[i] / MOST_PLANES == s->number[j] / MOST_PLANES &&
@@ -203,14 +210,15 @@ static int walk(const struct sweep *s, bool *walked, int *list)
     return end;
 }
 
-/* The mean matching cost of a surface's pixels on a plane. */
-static double cost_of(const struct sweep *s, const int *list, int count, struct plane plane)
+/* The mean matching cost of a surface's pixels on a plane; NULL: on their own. */
+static double cost_of(const struct sweep *s, const int *list, int count, const struct plane *plane)
 {
     double sum = 0, pixels = 0;
     for (int n = 0; n < count; n++) {
         const int size = s->p->m->segments->segments[list[n]].pixels;
         float cost;
-        if (match_evidence(s->p->m, list[n], plane, 0, &cost) < SEEN_BY) cost = MATCH_CHANCE;
+        if (match_evidence(s->p->m, list[n], plane ? *plane : s->start[list[n]], 0, &cost) < SEEN_BY)
+            cost = MATCH_CHANCE;
         sum += size * (double)cost;
         pixels += size;
     }
@@ -227,7 +235,7 @@ static struct plane refine(const struct sweep *s, const int *list, int count, do
     *cost = INFINITY;
     for (int k = -2 * REFINE; k <= 2 * REFINE; k++) {
         const struct plane plane = plane_of(s, direction, sum / count + (double)k / REFINE);
-        const double c = cost_of(s, list, count, plane);
+        const double c = cost_of(s, list, count, &plane);
         if (!(c < *cost)) continue;
         *cost = c;
         best = plane;
@@ -264,13 +272,17 @@ static enum status take_surfaces(struct plane *planes, double *distinct, struct 
         const int count = walk(s, walked, list);
         for (int n = 0; n < count; n++) pixels += g->segments[list[n]].pixels;
         if (pixels < SMALLEST * g->width * g->height) continue;
-        const struct plane plane = refine(s, list, count, &cost);
+        const bool own = s->number[i] == OWN;
+        if (own) cost = cost_of(s, list, count, NULL);
+        const struct plane plane = own ? planes[i] : refine(s, list, count, &cost);
         if (!(cost <= GOOD)) continue;
-        add_plane(largest, plane, pixels);
+        if (!own) add_plane(largest, plane, pixels);
         for (int n = 0; n < count; n++) {
-            planes[list[n]] = plane;
-            distinct[list[n]] = clamp((double)s->best[list[n]] / DISTINCT, 0, 1);
-            found[list[n]] = plane;
+            const int k = list[n];
+            const double gain = (double)(own ? s->own_gain[k] : s->best[k]);
+            if (!own) planes[k] = plane;
+            distinct[k] = fmax(own ? distinct[k] : 0, clamp(gain / DISTINCT, 0, 1));
+            found[k] = planes[k];
         }
     }
     free(walked);
@@ -281,8 +293,8 @@ static enum status take_surfaces(struct plane *planes, double *distinct, struct 
 static enum status sweep_init(struct sweep *s, struct err *err)
 {
     const size_t count = (size_t)s->p->m->segments->count + 1;
-    float **lists[] = {&s->own, &s->cost, &s->gain, &s->next, &s->best};
-    for (int k = 0; k < 5; k++)
+    float **lists[] = {&s->own, &s->cost, &s->gain, &s->next, &s->best, &s->own_gain};
+    for (int k = 0; k < 6; k++)
         if (!(*lists[k] = calloc(count, sizeof **lists[k]))) return err_nomem(err, "surfaces of furniture", count * 4);
     if (!(s->number = malloc(count * sizeof *s->number))) return err_nomem(err, "surfaces of furniture", count * 4);
     return ST_OK;
@@ -295,6 +307,7 @@ static void sweep_release(struct sweep *s)
     free(s->gain);
     free(s->next);
     free(s->best);
+    free(s->own_gain);
     free(s->number);
 }
 
@@ -308,11 +321,12 @@ enum status furniture_sweep_find(struct plane *planes, double *distinct, struct 
         return err->status;
     }
     list_directions(&s);
+    parallel_for((size_t)count, 64, match_own, &s);
+    for (int n = 0; n < AVERAGES; n++) average(&s, &s.own_gain, &s.next);
     for (int i = 0; i < count; i++) {
-        s.number[i] = -1;
+        s.number[i] = s.own_gain[i] > LEAST_GAIN && is_before(&s, i, planes[i]) ? OWN : -1;
         s.best[i] = LEAST_GAIN;
     }
-    parallel_for((size_t)count, 64, match_own, &s);
     for (int d = 0; d < s.count; d++) {
         set_steps(&s.directions[d], NEAREST * s.height, p->view->fx);
         for (int k = 0; k < s.directions[d].planes; k++) {

@@ -1,4 +1,4 @@
-/* furniture_sweep.c - tables and fronts of furniture that depth missed are found by what matches on planes before the model. */
+/* furniture_sweep.c - furniture that depth missed is found by what matches on planes before the model. */
 #include "stages/segment_depth/furniture_sweep.h"
 
 #include "tests/unit/segment_depth/problem.h"
