@@ -20,15 +20,21 @@ enum { NEAREST = 3 };
 enum status level_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err)
 {
     const size_t count = (size_t)groups->count + 1;
-    *w = (struct state_weights){.relative = calloc(count, sizeof *w->relative),
-                                .absolute = calloc(count, sizeof *w->absolute)};
-    return w->relative && w->absolute ? ST_OK : err_nomem(err, "groups of light", count * sizeof *w->relative);
+    *w = (struct state_weights){.groups = groups,
+                                .relative = calloc(count, sizeof *w->relative),
+                                .absolute = calloc(count, sizeof *w->absolute),
+                                .windows = calloc((size_t)groups->windows_count + 1, sizeof *w->windows)};
+    if (!w->relative || !w->absolute || !w->windows)
+        return err_nomem(err, "groups of light", count * sizeof *w->relative);
+    for (int v = 0; v < groups->windows_count; v++) w->windows[v] = 1;
+    return ST_OK;
 }
 
 void level_weights_release(struct state_weights *w)
 {
     free(w->relative);
     free(w->absolute);
+    free(w->windows);
     *w = (struct state_weights){0};
 }
 
@@ -53,7 +59,7 @@ static void add_beams(struct state_weights *w, const struct light_groups *g)
     for (int i = 0; i < NEAREST; i++) sum += 1 / (away[i] + 1e-6);
     for (int i = 0; i < NEAREST; i++)
         for (int v = 0; v < g->windows_count; v++)
-            w->absolute[groups_beam(g, v, near[i])] += w->sun / (away[i] + 1e-6) / sum;
+            w->absolute[groups_beam(g, v, near[i])] += w->windows[v] * w->sun / (away[i] + 1e-6) / sum;
 }
 
 void level_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
@@ -62,7 +68,7 @@ void level_weights_add_sky(struct state_weights *w, const struct sky_luminance *
     double luminance[144 + 2];
     sky_patch_luminances(luminance, &groups->patches, sky);
     for (int v = 0; v < groups->windows_count; v++) {
-        const double glass = v + 1 < groups->windows_count ? params->glass : 1;
+        const double glass = w->windows[v] * (v + 1 < groups->windows_count ? params->glass : 1);
         for (int k = 0; k < groups->patches.count; k++) w->absolute[groups_patch(groups, v, k)] += glass * luminance[k];
     }
     w->has_absolute = true;
@@ -97,6 +103,46 @@ enum status level_lamps_check(const struct state_list *states, const struct ligh
     return ST_OK;
 }
 
+static int find_window(const struct light_groups *g, const char *name)
+{
+    for (int v = 0; v + 1 < g->windows_count; v++)
+        if (!strcmp(g->windows[v].name, name)) return v;
+    return -1;
+}
+
+static bool has_window(const struct model_field *field, const char *name, struct err *err)
+{
+    struct light_groups g = {0};
+    const bool has = !groups_make(&g, field, false, err) && find_window(&g, name) >= 0;
+    groups_release(&g);
+    return has;
+}
+
+/* An edit may take away a window that has a blind. */
+enum status level_blinds_check(const struct state_list *states, const struct level_scene *scene, struct err *err)
+{
+    for (int i = 0; i < states->count; i++)
+        for (int k = 0; !err->status && k < states->items[i].blind_count; k++) {
+            const char *name = states->items[i].blinds[k].name;
+            if (has_window(level_scene_field(scene), name, err) ||
+                (scene->edited && has_window(&scene->change.before, name, err)) || err->status)
+                continue;
+            err_set(err, ST_DATA,
+                    "%s:%d: found a blind of the window %s, which the scene does not have; wanted a window of "
+                    "model.txt or of lights/lights.txt.",
+                    states->path, states->items[i].line, name);
+        }
+    return err->status;
+}
+
+static void set_blinds(struct state_weights *w, const struct light_state *s)
+{
+    for (int k = 0; k < s->blind_count; k++) {
+        const int window = find_window(w->groups, s->blinds[k].name);
+        if (window >= 0) w->windows[window] = s->blinds[k].factor;
+    }
+}
+
 static void set_lamps(struct state_weights *w, const struct light_state *s, const struct light_groups *g)
 {
     const struct light_list *l = &g->field->lights;
@@ -121,8 +167,9 @@ enum status level_weights_make(struct state_weights *w, const struct light_state
     struct sky_luminance sky;
     if (level_weights_init(w, groups, err)) return err->status;
     set_lamps(w, state, groups);
+    set_blinds(w, state);
     for (int v = 0; state->sky == STATE_SKY_PHOTOGRAPHED && v < groups->windows_count; v++)
-        w->relative[groups->sky + v] = w->relative[groups->sun + v] = 1;
+        w->relative[groups->sky + v] = w->relative[groups->sun + v] = w->windows[v];
     if (state->sky == STATE_SKY_OVERCAST) {
         sky = sky_of_type(SKY_TRADITIONAL, vec3_make(0, 0, 1), state->horizontal, 0, params->ground);
         level_weights_add_sky(w, &sky, groups, params);
@@ -187,8 +234,14 @@ void level_points_sum(double to[2], const struct level_points *p, int point, con
         to[0] += w->relative[g] * (double)own[g];
         to[1] += w->absolute[g] * (double)own[g];
     }
-    if (field && w->sun > 0 && rows_sees_sun(field, p->points[point], w->to_sun))
-        to[1] += w->sun * vec3_dot(p->points[point].normal, w->to_sun);
+    if (field) to[1] += level_weights_sun(w, p->points[point]);
+}
+
+double level_weights_sun(const struct state_weights *w, struct gather_point p)
+{
+    const struct model_field *field = w->groups->field;
+    if (!(w->sun > 0) || !rows_sees_sun(field, p, w->to_sun)) return 0;
+    return w->windows[groups_window(w->groups, p.at, w->to_sun)] * w->sun * vec3_dot(p.normal, w->to_sun);
 }
 
 /* ---------------------------------------------------------------------------------------------------------- patches */

@@ -8,23 +8,28 @@
 /* What each group is multiplied by, luminance by luminance: `relative` in the unit of the photographs, `absolute` in
  * lx or cd/m2. Owned. */
 struct state_weights {
+    const struct light_groups *groups; /* not owned */
     double *relative, *absolute;
+    double *windows; /* the part of daylight that each window's blind lets through */
     bool has_relative, has_absolute; /* some weight is not 0 */
     bool has_planned;                /* so is that of a planned lamp */
     struct vec3 to_sun;
     double sun; /* lx on a surface that faces it, within the panes; 0: none */
 };
 
-/* ST_DATA: a state names a lamp that the scene does not have, with file and line. */
+/* ST_DATA: a state names a lamp or a window that the scene does not have, with file and line. */
 enum status level_lamps_check(const struct state_list *states, const struct light_list *lights, struct err *err);
+enum status level_blinds_check(const struct state_list *states, const struct level_scene *scene, struct err *err);
 
 /* The caller releases w in each case. ST_NOMEM. */
 enum status level_weights_make(struct state_weights *w, const struct light_state *state,
                                const struct state_list *states, const struct light_groups *groups,
                                const struct levels_params *params, struct err *err);
-/* The same of a sky and its sun alone. */
+/* Adds a sky and its sun, through the blinds of w. */
 void level_weights_add_sky(struct state_weights *w, const struct sky_luminance *sky, const struct light_groups *groups,
                            const struct levels_params *params);
+/* lx of the sun directly, at a point, by a ray. */
+double level_weights_sun(const struct state_weights *w, struct gather_point p);
 enum status level_weights_init(struct state_weights *w, const struct light_groups *groups, struct err *err);
 void level_weights_release(struct state_weights *w);
 

@@ -23,7 +23,6 @@
 #include "stages/light_levels/level_lines.h"
 #include "stages/light_levels/level_scale.h"
 #include "stages/light_levels/patch_values.h"
-#include "stages/light_levels/rows.h"
 
 enum { MOST_SIDE = 720, GRID = 4, QUALITY = 82, MARGIN = 56, ROWS = 8, PIXELS = 4096, SAMPLES = 4 };
 static const double DARK = 0.3, SHADE = 0.35; /* of the photograph: alone, and below colours */
@@ -232,14 +231,6 @@ enum status level_views_patches(double *patches, const struct level_light *light
     return err->status;
 }
 
-/* The sun's light at a point of a surface that a ray from the camera met. */
-static double sun_at(const struct level_light *light, const struct state_weights *w, struct vec3 at, struct vec3 normal)
-{
-    const struct gather_point p = {at, normal};
-    if (!(w->sun > 0) || !rows_sees_sun(light->patches.field, p, w->to_sun)) return 0;
-    return w->sun * vec3_dot(normal, w->to_sun);
-}
-
 struct valuing {
     float *values;
     const struct level_view *view;
@@ -258,7 +249,8 @@ static float value_of(const struct valuing *j, const struct level_pixel *pixel)
     const struct vec3 normal =
         surface >= 0 ? p->field->model.mesh.faces[surface].normal : p->list[-2 - surface].origins[0].normal;
     const double value = surface >= 0 ? patch_values_at(p, j->patches, surface, at) : j->patches[-2 - surface];
-    return (float)(value + j->state->factors[1] * sun_at(j->light, j->state->weights, at, normal));
+    const struct gather_point point = {at, normal};
+    return (float)(value + j->state->factors[1] * level_weights_sun(j->state->weights, point));
 }
 
 static void value_pixels(void *ctx, size_t begin, size_t end, int thread)

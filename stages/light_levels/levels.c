@@ -50,6 +50,7 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
         state_list_take_weather(&j->states, f->weather ? &j->weather : NULL, err) ||
         model_plan_read(&j->plan, f->plan, &j->prov, err) || level_scene_read(&j->scene, &f->light, &j->prov, err) ||
         level_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err) ||
+        level_blinds_check(&j->states, &j->scene, err) ||
         level_metre_find(&j->scene.metre, &j->scene.axes, &j->plan, &j->params, err))
         return err->status;
     j->scene.planned = &j->states.planned;

@@ -15,7 +15,9 @@ enum { YEAR = 2025 };                                    /* of times, which have
 static void release_state(struct light_state *s)
 {
     for (int i = 0; i < s->named_count; i++) free(s->named[i].name);
+    for (int i = 0; i < s->blind_count; i++) free(s->blinds[i].name);
     free(s->named);
+    free(s->blinds);
     free(s->name);
 }
 
@@ -42,17 +44,18 @@ static enum status read_site(struct state_list *l, struct textfile *t, struct er
     return textfile_number(t, "the azimuth of north in degrees", -360, 360, &l->north, err);
 }
 
-static enum status read_lamp(struct light_state *s, struct textfile *t, struct err *err)
+/* A name and a factor up to `most`. */
+static enum status read_factor(struct state_factor **list, int *count, struct textfile *t, const char *what, double most,
+                               struct err *err)
 {
     char *word;
-    if (textfile_word(t, "a lamp's name", &word, err) ||
-        array_append(&s->named, (size_t)s->named_count, sizeof *s->named, "lamps", err))
+    if (textfile_word(t, what, &word, err) || array_append(list, (size_t)*count, sizeof **list, "factors", err))
         return err->status;
-    struct state_lamp *lamp = &s->named[s->named_count];
-    lamp->name = strdup(word);
-    if (!lamp->name) return err_nomem(err, "a name", strlen(word));
-    s->named_count++;
-    return textfile_number(t, "a factor", 0, MOST_FACTOR, &lamp->factor, err);
+    struct state_factor *f = &(*list)[*count];
+    f->name = strdup(word);
+    if (!f->name) return err_nomem(err, "a name", strlen(word));
+    ++*count;
+    return textfile_number(t, "a factor", 0, most, &f->factor, err);
 }
 
 static enum status read_time(struct light_state *s, const struct state_list *l, struct textfile *t, struct err *err)
@@ -143,11 +146,13 @@ static enum status read_state(struct state_list *l, struct textfile *t, struct e
         if (!strcmp(word, "lamps"))
             read_lamps(s, t, err);
         else if (!strcmp(word, "lamp"))
-            read_lamp(s, t, err);
+            read_factor(&s->named, &s->named_count, t, "a lamp's name", MOST_FACTOR, err);
         else if (!strcmp(word, "sky"))
             read_sky(s, l, t, err);
+        else if (!strcmp(word, "blind"))
+            read_factor(&s->blinds, &s->blind_count, t, "a window's name", 1, err);
         else
-            textfile_error(t, err, word, "lamps on|off, lamp NAME FACTOR or sky SKY");
+            textfile_error(t, err, word, "lamps on|off, lamp NAME FACTOR, sky SKY or blind WINDOW PART");
     }
     return err->status;
 }

@@ -3,7 +3,7 @@
  *   remodel-states 1
  *   site LATITUDE LONGITUDE ZONE [north DEGREES]     before states that need the sun
  *   lamp NAME ies FILE.ies at X Y Z ...              a planned lamp (planned_lamps.h), before states that name it
- *   state NAME [lamps on|off] [lamp NAME FACTOR]... [sky SKY]
+ *   state NAME [lamps on|off] [lamp NAME FACTOR]... [sky SKY] [blind WINDOW PART]...
  *
  * ZONE: hours that clocks are ahead of UTC. DEGREES: the azimuth of north in the model's frame, from x towards y (90
  * without it: the y axis points north). SKY is
@@ -12,7 +12,8 @@
  *   overcast LUX                        the overcast sky of daylight factors, with this horizontal illuminance
  *   clear|partly|cloudy MONTH DAY HOUR  the usual sky at that time, by the clock of the zone
  *   weather MONTH DAY HOUR              that of the weather file in the hour that this time is in
- * Lamps of the photographs are on unless a state says otherwise, planned ones off; `lamp` multiplies one by FACTOR. */
+ * Lamps of the photographs are on unless a state says otherwise, planned ones off; `lamp` multiplies one by FACTOR.
+ * `blind` multiplies what comes through a window, sky and sun, by PART of 0 to 1. */
 #ifndef REMODEL_LEVELS_STATE_LIST_H
 #define REMODEL_LEVELS_STATE_LIST_H
 
@@ -23,7 +24,7 @@
 
 enum state_sky { STATE_SKY_NONE, STATE_SKY_PHOTOGRAPHED, STATE_SKY_OVERCAST, STATE_SKY_TIME, STATE_SKY_WEATHER };
 
-struct state_lamp {
+struct state_factor {
     char *name; /* owned */
     double factor;
 };
@@ -31,8 +32,10 @@ struct state_lamp {
 struct light_state {
     char *name; /* owned */
     bool lamps; /* those that are not named */
-    struct state_lamp *named;
+    struct state_factor *named;
     int named_count;
+    struct state_factor *blinds; /* of windows */
+    int blind_count;
     enum state_sky sky;
     double horizontal;    /* lx, of STATE_SKY_OVERCAST */
     enum sky_cover cover; /* of STATE_SKY_TIME */
