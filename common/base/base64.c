@@ -2,10 +2,12 @@
 #include "common/base/base64.h"
 
 #include <stdint.h>
+#include <string.h>
+
+static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
 
 void base64_write(FILE *to, const void *bytes, size_t size)
 {
-    static const char DIGITS[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     const unsigned char *b = bytes;
     for (size_t i = 0; i < size; i += 3) {
         size_t left = size - i;
@@ -28,4 +30,26 @@ enum status base64_write_file(FILE *to, const char *path, struct err *err)
     if (from && ferror(from)) err_errno(err, "read", path);
     if (from) fclose(from);
     return err->status;
+}
+
+bool base64_read(unsigned char *bytes, size_t *size, const char *text)
+{
+    signed char value[256];
+    const size_t length = strlen(text);
+    const size_t padding = length && text[length - 1] == '=' ? 1 + (length > 1 && text[length - 2] == '=') : 0;
+    uint32_t word = 0;
+    memset(value, -1, sizeof value);
+    for (int i = 0; i < 64; i++) value[(unsigned char)DIGITS[i]] = (signed char)i;
+    *size = 0;
+    if (length % 4) return false;
+    for (size_t i = 0; i < length; i++) {
+        const int digit = i < length - padding ? value[(unsigned char)text[i]] : 0;
+        if (digit < 0) return false;
+        word = word << 6 | (uint32_t)digit;
+        if (i % 4 < 3) continue;
+        for (int k = 0; k < 3; k++)
+            if (i + 1 < length || k < 3 - (int)padding) bytes[(*size)++] = (unsigned char)(word >> (16 - 8 * k) & 255);
+        word = 0;
+    }
+    return true;
 }

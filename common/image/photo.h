@@ -34,6 +34,9 @@ enum status photo_check(struct photo *p, const char *path, bool gain_maps, struc
 /* Any format; these read headers only. */
 enum status photo_read_info(struct photo_info *info, const char *path, struct err *err);
 enum status photo_read_hdr_info(struct photo_info *info, const char *path, struct err *err); /* of photo_read_hdr() */
+/* A JPEG in memory, into bytes; `name` is for errors. ST_DATA: it is damaged. */
+enum status photo_decode_jpeg(struct photo *p, const unsigned char *bytes, size_t size, const char *name,
+                              struct err *err);
 
 /* Linear Rec.709, by the photo's colour space or the sRGB curve: 3 channels, white is 1; colours outside of Rec.709
  * have components below 0. p must have samples. */

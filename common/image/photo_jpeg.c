@@ -206,6 +206,15 @@ enum status photo_read_jpeg(struct photo *p, const struct photo_bytes *file, enu
 
 /* ---------------------------------------------------------------------------------------------------------- writing */
 
+enum status photo_decode_jpeg(struct photo *p, const unsigned char *bytes, size_t size, const char *name,
+                              struct err *err)
+{
+    const struct photo_bytes file = {name, (unsigned char *)bytes, size};
+    *p = (struct photo){.saturation = 0};
+    if (photo_read_jpeg(p, &file, PHOTO_BYTES, err)) photo_release(p);
+    return err->status;
+}
+
 enum status jpeg_encode(unsigned char **bytes, size_t *size, const unsigned char *rgb, int width, int height,
                         int quality, struct err *err)
 {

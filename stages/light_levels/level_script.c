@@ -1,28 +1,25 @@
 /* level_script.c - see level_script.h.
  *
  * Points of floors are left out, and of large rooms every second or third point of a row and of a column is kept, so
- * that a variant has about MOST_POINTS. Light is kept as the logarithm between the least and the most of its kind, in
- * steps of 16 bits, which is exact to a thousandth. */
+ * that a variant has about MOST_POINTS. Light is that of relit_light.h, in 16 bits (light_codes.h). */
 #include "stages/light_levels/level_script.h"
 
 #include <math.h>
 #include <stdlib.h>
 
-#include "common/base/base64.h"
 #include "common/base/outfile.h"
 #include "common/base/scan.h"
 #include "common/image/false_colour.h"
 #include "common/product/product.h"
+#include "stages/light_levels/level_interval.h"
 #include "stages/light_levels/level_scale.h"
+#include "stages/light_levels/light_codes.h"
 
-enum { MOST_POINTS = 1500, RAMP = 64, PER_HOUR = 2, LEVELS = 65535 };
-static const double SPAN = 1e7; /* of light: what is less counts as none */
+enum { MOST_POINTS = 1500, RAMP = 64 };
 
 struct writing {
     const struct level_script *s;
     FILE *to;
-    int *chosen; /* points; owned */
-    int count, stride;
 };
 
 static void put_text(FILE *to, const char *text)
@@ -41,45 +38,46 @@ static void put_text(FILE *to, const char *text)
 static bool is_shown(const struct sensor_area *a) { return a->kind == SENSOR_WORK_PLANE || a->kind == SENSOR_PLACE; }
 
 /* Keeps a point of a room by its row and column. */
-static bool is_kept(const struct writing *w, const struct sensor_area *a, int point)
+static bool is_kept(const struct sensors *s, const struct sensor_area *a, int point, int stride)
 {
-    if (a->kind == SENSOR_PLACE || w->stride == 1) return true;
-    const struct vec3 first = w->s->sensors->points[a->first].at, at = w->s->sensors->points[point].at;
+    if (a->kind == SENSOR_PLACE || stride == 1) return true;
+    const struct vec3 first = s->points[a->first].at, at = s->points[point].at;
     const long x = lround((at.x - first.x) / a->step), y = lround((at.y - first.y) / a->step);
-    return x % w->stride == 0 && y % w->stride == 0;
+    return x % stride == 0 && y % stride == 0;
 }
 
-static enum status choose_points(struct writing *w, struct err *err)
+enum status level_script_choose(struct script_points *p, const struct sensors *s, struct err *err)
 {
-    const struct sensors *s = w->s->sensors;
     int shown = 0;
     for (int k = 0; k < s->area_count; k++) shown += is_shown(&s->areas[k]) ? s->areas[k].count : 0;
-    w->stride = (int)ceil(sqrt((double)shown / MOST_POINTS));
-    if (w->stride < 1) w->stride = 1;
-    w->chosen = malloc(((size_t)s->count + 1) * sizeof *w->chosen);
-    return w->chosen ? ST_OK : err_nomem(err, "points", (size_t)s->count * sizeof *w->chosen);
+    *p = (struct script_points){malloc(((size_t)s->count + 1) * sizeof *p->chosen), 0, 1};
+    if (!p->chosen) return err_nomem(err, "points", (size_t)s->count * sizeof *p->chosen);
+    p->stride = (int)fmax(1, ceil(sqrt((double)shown / MOST_POINTS)));
+    for (int k = 0; k < s->area_count; k++)
+        for (int i = s->areas[k].first; is_shown(&s->areas[k]) && i < s->areas[k].first + s->areas[k].count; i++)
+            if (is_kept(s, &s->areas[k], i, p->stride)) p->chosen[p->count++] = i;
+    return ST_OK;
 }
 
-static void put_areas(struct writing *w)
+static void put_areas(const struct writing *w)
 {
     const struct sensors *s = w->s->sensors;
-    bool first = true;
+    const struct script_points *p = w->s->chosen;
+    int at = 0;
     fputs("\"areas\":[", w->to);
     for (int k = 0; k < s->area_count; k++) {
         const struct sensor_area *a = &s->areas[k];
-        const int before = w->count;
+        const int first = at;
         if (!is_shown(a)) continue;
-        for (int i = a->first; i < a->first + a->count; i++)
-            if (is_kept(w, a, i)) w->chosen[w->count++] = i;
-        fprintf(w->to, "%s{\"kind\":\"%s\",\"name\":", first ? "" : ",", sensor_kind_word(a->kind));
+        while (at < p->count && p->chosen[at] < a->first + a->count) at++;
+        fprintf(w->to, "%s{\"kind\":\"%s\",\"name\":", first ? "," : "", sensor_kind_word(a->kind));
         put_text(w->to, a->name);
-        fprintf(w->to, ",\"first\":%d,\"count\":%d,\"step\":%.6g}", before, w->count - before,
-                a->step * (a->kind == SENSOR_PLACE ? 1 : w->stride));
-        first = false;
+        fprintf(w->to, ",\"first\":%d,\"count\":%d,\"step\":%.6g}", first, at - first,
+                a->step * (a->kind == SENSOR_PLACE ? 1 : p->stride));
     }
     fputs("],\n\"points\":[", w->to);
-    for (int i = 0; i < w->count; i++)
-        fprintf(w->to, "%s%.2f,%.2f", i ? "," : "", s->points[w->chosen[i]].at.x, s->points[w->chosen[i]].at.y);
+    for (int i = 0; i < p->count; i++)
+        fprintf(w->to, "%s%.2f,%.2f", i ? "," : "", s->points[p->chosen[i]].at.x, s->points[p->chosen[i]].at.y);
     fputs("],\n", w->to);
 }
 
@@ -110,117 +108,109 @@ static void put_plan(const struct writing *w)
 
 /* ------------------------------------------------------------------------------------------------------------ light */
 
-/* {"low":..,"high":..,"data":".."}: 0 is none, n is low (high / low)^((n - 1) / (LEVELS - 1)). */
-static enum status put_light(FILE *to, const float *values, size_t count, struct err *err)
+static enum status put_field(const struct writing *w, const struct relit_field *f, struct err *err)
 {
-    unsigned char *bytes = malloc(2 * count + 1);
-    double high = 0;
-    if (!bytes) return err_nomem(err, "light", 2 * count);
-    for (size_t i = 0; i < count; i++) high = fmax(high, (double)values[i]);
-    const double low = high / SPAN;
-    for (size_t i = 0; i < count; i++) {
-        const double v = (double)values[i];
-        const long n = v > low ? 1 + lround((LEVELS - 1) * log(v / low) / log(SPAN)) : 0;
-        bytes[2 * i] = (unsigned char)(n & 255);
-        bytes[2 * i + 1] = (unsigned char)(n >> 8);
+    const float *values = f->values + 3 * w->s->relit->places;
+    const size_t count = (size_t)w->s->relit->points;
+    if (f->kind == RELIT_PART) {
+        const double most = light_codes_most(values, count);
+        fprintf(w->to, "{\"most\":%.8g,\"data\":\"", most);
+        light_codes_put_signed(w->to, values, count, most, err);
+    } else {
+        const double high = light_codes_highest(values, count);
+        fprintf(w->to, "{\"low\":%.8g,\"high\":%.8g,\"data\":\"", light_codes_low(high), high);
+        light_codes_put(w->to, values, count, high, err);
     }
-    fprintf(to, "{\"low\":%.8g,\"high\":%.8g,\"data\":\"", low, high);
-    base64_write(to, bytes, 2 * count);
-    fputs("\"}", to);
-    free(bytes);
-    return ST_OK;
-}
-
-/* The light of a state at the chosen points, in the unit of the photographs (unit 0) or in lx (1). */
-static enum status put_weighted(const struct writing *w, const struct state_weights *weights, int unit, struct err *err)
-{
-    float *values = malloc(((size_t)w->count + 1) * sizeof *values);
-    if (!values) return err_nomem(err, "light", (size_t)w->count * sizeof *values);
-    for (int i = 0; i < w->count; i++) {
-        double sums[2];
-        level_points_sum(sums, w->s->points, w->chosen[i], weights, w->s->light->groups.field);
-        values[i] = (float)sums[unit];
-    }
-    put_light(w->to, values, (size_t)w->count, err);
-    free(values);
+    fputs("\"}", w->to);
     return err->status;
 }
 
 static enum status put_lamps(const struct writing *w, struct err *err)
 {
-    const struct light_groups *g = &w->s->light->groups;
-    struct state_weights weights = {0};
-    if (!level_weights_init(&weights, g, err)) fputs("\"lamps\":[", w->to);
-    for (int i = 0; !err->status && i <= g->rest; i++) {
-        fputs(i ? ",\n{\"name\":" : "{\"name\":", w->to);
-        put_text(w->to, i < g->rest ? g->field->lights.lamps[i].name : "");
+    const struct relit_light *r = w->s->relit;
+    const char *comma = "";
+    fputs("\"lamps\":[", w->to);
+    for (int i = 0; !err->status && i < r->field_count; i++) {
+        if (r->fields[i].kind != RELIT_LAMP) continue;
+        const struct relit_lamp *lamp = &r->lamps[r->fields[i].of];
+        fprintf(w->to, "%s{%s\"name\":", comma, lamp->kind == RELIT_PLANNED ? "\"planned\":true," : "");
+        put_text(w->to, lamp->name);
         fputs(",\"light\":", w->to);
-        weights.relative[i] = 1;
-        put_weighted(w, &weights, 0, err);
-        weights.relative[i] = 0;
+        put_field(w, &r->fields[i], err);
         fputs("}", w->to);
+        comma = ",\n";
     }
-    for (int i = 0; !err->status && i < g->count - g->planned; i++) {
-        fputs(",\n{\"planned\":true,\"name\":", w->to);
-        put_text(w->to, g->planned_lamps->list[i].name);
-        fputs(",\"light\":", w->to);
-        weights.absolute[g->planned + i] = 1;
-        put_weighted(w, &weights, 1, err);
-        weights.absolute[g->planned + i] = 0;
-        fputs("}", w->to);
+    fputs("],\n", w->to);
+    return err->status;
+}
+
+static enum status put_windows(const struct writing *w, struct err *err)
+{
+    const struct relit_light *r = w->s->relit;
+    fputs("\"windows\":[", w->to);
+    for (int v = 0; v < r->window_count; v++) {
+        fputs(v ? ",\n{\"name\":" : "{\"name\":", w->to);
+        put_text(w->to, v + 1 < r->window_count ? r->windows[v] : "");
+        const char *comma = "";
+        bool has_level = false;
+        for (int i = 0; !err->status && i < r->field_count; i++) {
+            const struct relit_field *f = &r->fields[i];
+            if (f->of != v || f->kind == RELIT_LAMP || f->kind == RELIT_TEXTURE) continue;
+            if (f->kind == RELIT_WINDOW) fputs(",\"photographed\":", w->to);
+            if (f->kind == RELIT_LEVEL) fputs(",\"level\":", w->to);
+            if (f->kind == RELIT_PART) fputs(*comma ? comma : ",\"parts\":[", w->to), comma = ",\n";
+            has_level |= f->kind == RELIT_PART;
+            put_field(w, f, err);
+        }
+        fputs(has_level ? "]}" : "}", w->to);
     }
-    if (!err->status) fputs("],\n", w->to);
-    level_weights_release(&weights);
+    fputs("],\n", w->to);
     return err->status;
 }
 
 static enum status put_skies(const struct writing *w, struct err *err)
 {
-    static const char *const keys[] = {"photographed", "overcast"};
-    const struct level_script *s = w->s;
-    static const struct light_state skies[] = {{.sky = STATE_SKY_PHOTOGRAPHED},
-                                               {.sky = STATE_SKY_OVERCAST, .horizontal = STATE_OVERCAST_LUX}};
-    for (int i = 0; !err->status && i < 2; i++) {
-        struct state_weights weights = {0};
-        fprintf(w->to, "\"%s\":", keys[i]);
-        if (!level_weights_make(&weights, &skies[i], s->states, &s->light->groups, s->params, err))
-            put_weighted(w, &weights, i, err);
-        level_weights_release(&weights);
-        fputs(",\n", w->to);
+    const struct relit_light *r = w->s->relit;
+    fputs("\"skies\":[", w->to);
+    for (int i = 0; i < r->sky_count; i++) {
+        const struct relit_sky *s = &r->skies[i];
+        fprintf(w->to, "%s{\"sun\":%.6g,\"shade\":%d,\"mixes\":[", i ? ",\n" : "", s->sun * fmax(0, s->to_sun.z),
+                s->shade);
+        for (int k = 0; k < r->part_count; k++) fprintf(w->to, "%s%.6g", k ? "," : "", s->mixes[k]);
+        fputs("]}", w->to);
     }
+    fputs("],\n\"suns\":[", w->to);
+    for (int k = 0; !err->status && k < r->shade_count; k++) {
+        fputs(k ? ",\"" : "\"", w->to);
+        light_codes_put_runs(w->to, r->shades[k], (size_t)r->points, err);
+        fputs("\"", w->to);
+    }
+    fputs("],\n", w->to);
     return err->status;
 }
 
-static enum status put_days(const struct writing *w, struct err *err)
+static void put_days(const struct writing *w)
 {
-    const struct level_script *s = w->s;
-    struct level_days d = {.day_count = 0};
-    float *values = NULL;
-    if (!level_days_make(&d, s->states, s->day, PER_HOUR, err)) {
-        const size_t count = (size_t)d.hour_count * LEVEL_COVERS * (size_t)w->count;
-        values = malloc((count + 1) * sizeof *values);
-        if (!values) err_nomem(err, "light of days", count * sizeof *values);
-        if (!err->status)
-            level_days_light(values, &d, s->points, w->chosen, w->count, s->light, s->states, s->params, err);
-    }
-    if (!err->status) fputs("\"days\":[", w->to);
-    for (int i = 0; !err->status && i < d.day_count; i++) {
-        const struct level_day *day = &d.days[i];
+    const struct level_days *d = w->s->days;
+    fputs("\"days\":[", w->to);
+    for (int i = 0; i < d->day_count; i++) {
+        const struct level_day *day = &d->days[i];
         fprintf(w->to, "%s{\"date\":\"%02d-%02d\",\"hours\":[", i ? ",\n" : "", day->month, day->day);
         for (int k = day->first; k < day->first + day->count; k++)
-            fprintf(w->to, "%s%g", k > day->first ? "," : "", d.hours[k].time.hour);
+            fprintf(w->to, "%s%g", k > day->first ? "," : "", d->hours[k].time.hour);
         fputs("],\"altitudes\":[", w->to);
         for (int k = day->first; k < day->first + day->count; k++)
-            fprintf(w->to, "%s%.0f", k > day->first ? "," : "", d.hours[k].sun.altitude);
-        fputs("],\"light\":", w->to);
-        put_light(w->to, values + (size_t)day->first * LEVEL_COVERS * (size_t)w->count,
-                  (size_t)day->count * LEVEL_COVERS * (size_t)w->count, err);
-        fputs("}", w->to);
+            fprintf(w->to, "%s%.0f", k > day->first ? "," : "", d->hours[k].sun.altitude);
+        fputs("],\"skies\":[", w->to);
+        for (int k = day->first; k < day->first + day->count; k++)
+            for (int cover = 0; cover < LEVEL_COVERS; cover++) {
+                const struct light_state state = {
+                    .sky = STATE_SKY_TIME, .cover = (enum sky_cover)cover, .time = d->hours[k].time};
+                fprintf(w->to, "%s%d", k > day->first || cover ? "," : "", relit_light_find_sky(w->s->relit, &state));
+            }
+        fputs("]}", w->to);
     }
-    if (!err->status) fputs("],\n", w->to);
-    free(values);
-    level_days_release(&d);
-    return err->status;
+    fputs("],\n", w->to);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- file */
@@ -228,10 +218,10 @@ static enum status put_days(const struct writing *w, struct err *err)
 static void put_head(const struct writing *w)
 {
     const struct level_script *s = w->s;
-    fprintf(w->to, "remodelLevels({\"version\":1,\"metric\":%s,\"scale\":%.6g,\"scaleLow\":%.6g,\"scaleHigh\":%.6g,\n",
+    fprintf(w->to, "remodelLevels({\"version\":2,\"metric\":%s,\"scale\":%.6g,\"scaleLow\":%.6g,\"scaleHigh\":%.6g,\n",
             s->metric ? "true" : "false", s->scale->is.scale, s->scale->is.low, s->scale->is.high);
-    fprintf(w->to, "\"workPlane\":%g,\"stride\":%d,\"overcastLux\":%g,\"ramp\":\"", s->params->work_plane, w->stride,
-            STATE_OVERCAST_LUX);
+    fprintf(w->to, "\"workPlane\":%g,\"stride\":%d,\"overcastLux\":%g,\"ramp\":\"", s->params->work_plane,
+            s->chosen->stride, STATE_OVERCAST_LUX);
     for (int i = 0; i < RAMP; i++) {
         unsigned char c[3];
         colour_of_ramp((double)i / (RAMP - 1), c);
@@ -244,6 +234,19 @@ static void put_head(const struct writing *w)
         fprintf(w->to, "%s\"%s\":[%g,%g]", i ? "," : "", units[i], scale.low, scale.high);
     }
     fputs("},\n", w->to);
+}
+
+/* Of computed light, with light of the photographs, with planned lamps, with both. */
+static void put_intervals(const struct writing *w)
+{
+    fputs("\"intervals\":[", w->to);
+    for (int k = 0; k < 4; k++) {
+        double ends[2];
+        level_interval(ends, (struct level_origin){k & 1, k >> 1}, w->s->params, w->s->errors, &w->s->scale->is,
+                       w->s->metre);
+        fprintf(w->to, "%s[%.6g,%.6g]", k ? "," : "", ends[0], ends[1]);
+    }
+    fputs("],\n", w->to);
 }
 
 static void put_site(const struct writing *w)
@@ -259,19 +262,22 @@ static void put_site(const struct writing *w)
 
 enum status level_script_write(const struct level_script *s, const char *path, struct err *err)
 {
-    struct writing w = {.s = s, .stride = 1};
+    struct writing w = {.s = s};
     struct outfile f = {0};
-    if (!choose_points(&w, err) && !outfile_open(&f, path, err)) {
+    if (!outfile_open(&f, path, err)) {
         const locale_t was = uselocale(scan_c_locale());
         w.to = f.fp;
         put_head(&w);
         put_areas(&w);
         put_plan(&w);
-        if (!put_lamps(&w, err) && !put_skies(&w, err) && !put_days(&w, err)) put_site(&w);
+        if (!put_lamps(&w, err) && !put_windows(&w, err) && !put_skies(&w, err)) {
+            put_days(&w);
+            put_intervals(&w);
+            put_site(&w);
+        }
         uselocale(was);
         if (!err->status) outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    free(w.chosen);
     return err->status;
 }

@@ -1,10 +1,9 @@
 /* level_sheet.c - see level_sheet.h.
  *
- * Intervals. The mean of an area has two errors, taken as independent and lognormal: that of the scale from the
- * photographs' unit to cd/m2 (lux_scale.h), which counts for light of the photographs alone, and that of the light
- * (level_spread.h): of lamps, sky and sun by their shares, of the model, its textures and the rays, [light_levels] error,
- * and of skies that were not photographed, sky_error. The interval is 95 % of their product. Where a metre is a guess, light
- * of planned lamps goes with its square, and the work plane's interval holds those of planes at both ends of the guess.
+ * Intervals. The mean of an area has two errors, taken as independent and lognormal: those of level_interval.h, by the
+ * scale and the metre, and that of the light (level_spread.h): of lamps, sky and sun by their shares, of the model, its
+ * textures and the rays, [light_levels] error, and of skies that were not photographed, sky_error. The interval is 95 %
+ * of their product. Where a metre is a guess, the work plane's interval holds those of planes at both ends of the guess.
  * Figures of a year are counted again in rooms that are darker and brighter by the model's error; the interval reaches
  * from the least to the most of them. The weather is taken as it is. */
 #include "stages/light_levels/level_sheet.h"
@@ -16,6 +15,7 @@
 
 #include "common/base/log.h"
 #include "common/product/product.h"
+#include "stages/light_levels/level_interval.h"
 #include "stages/light_levels/level_plan.h"
 #include "stages/light_levels/level_spread.h"
 #include "stages/light_levels/level_year.h"
@@ -36,15 +36,8 @@ static bool begin_reading(struct reading *r, const struct levels_job *j, const s
     if (!scaled && w->has_relative && w->has_absolute) return false;
     *r = (struct reading){
         state->name, scaled || !w->has_relative ? "lx" : "relative", {scaled ? scale->scale : 1, 1}, {0, 0}, w};
-    for (int k = 0; scaled && w->has_relative && k < 2; k++) {
-        const double d = log(k ? scale->high / scale->scale : scale->scale / scale->low) / LIGHT_NORMAL_95;
-        r->variance[k] += d * d;
-    }
-    const struct level_metre *metre = &j->scene.metre;
-    for (int k = 0; metre->guessed && w->has_planned && k < 2; k++) {
-        const double d = 2 * log(k ? metre->high / metre->units : metre->units / metre->low) / LIGHT_NORMAL_95;
-        r->variance[k] += d * d;
-    }
+    level_interval_variance(r->variance, (struct level_origin){w->has_relative, w->has_planned}, scale,
+                            &j->scene.metre);
     return true;
 }
 

@@ -72,6 +72,7 @@ void level_weights_add_sky(struct state_weights *w, const struct sky_luminance *
         for (int k = 0; k < groups->patches.count; k++) w->absolute[groups_patch(groups, v, k)] += glass * luminance[k];
     }
     w->has_absolute = true;
+    w->horizontal = sky_horizontal_illuminance(sky);
     w->to_sun = sky->to_sun;
     w->sun = sky->to_sun.z > 0 ? params->glass * sky->sun : 0;
     if (w->sun > 0) add_beams(w, groups);

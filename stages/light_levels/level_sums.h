@@ -15,6 +15,7 @@ struct state_weights {
     bool has_planned;                /* so is that of a planned lamp */
     struct vec3 to_sun;
     double sun; /* lx on a surface that faces it, within the panes; 0: none */
+    double horizontal; /* lx, of the unobstructed horizontal under the computed sky */
 };
 
 /* ST_DATA: a state names a lamp or a window that the scene does not have, with file and line. */

@@ -7,6 +7,8 @@
  * lamps and sky, daylight factors, hours of a year. */
 #include "stages/light_levels/levels.h"
 
+#include <stdlib.h>
+
 #include "common/base/log.h"
 #include "common/product/product.h"
 #include "stages/light_levels/level_file.h"
@@ -16,6 +18,9 @@
 #include "stages/light_levels/level_table.h"
 #include "stages/light_levels/place_marks.h"
 #include "stages/light_levels/quantities.h"
+#include "stages/light_levels/relit_file.h"
+
+enum { PER_HOUR = 2 }; /* of days on the page */
 
 void levels_release(struct levels_job *j)
 {
@@ -68,20 +73,51 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
     return ST_OK;
 }
 
-static enum status write_script(const struct levels_job *j, struct err *err)
+static enum status write_relit(const struct levels_job *j, const struct relit_light *relit,
+                               const struct script_points *chosen, const struct level_days *days, struct err *err)
 {
-    const struct level_script s = {.points = &j->levels,
+    const struct level_script s = {.chosen = chosen,
+                                   .relit = relit,
+                                   .days = days,
                                    .sensors = &j->sensors,
                                    .plan = &j->plan,
-                                   .light = &j->light,
                                    .states = &j->states,
                                    .params = &j->params,
                                    .scale = &j->scale,
-                                   .day = j->files.day ? &j->day : NULL,
+                                   .errors = &j->errors,
+                                   .metre = &j->scene.metre,
                                    .metric = j->scene.axes.metric};
+    const struct product_key key = {0};
     char path[FILE_PATH];
-    if (product_path_in(path, j->out, PRODUCT_LIGHT_SCRIPT, &(struct product_key){0}, err)) return err->status;
+    if (product_path_in(path, j->out, PRODUCT_LIGHT_RELIT, &key, err) || relit_file_write(relit, path, err) ||
+        product_path_in(path, j->out, PRODUCT_LIGHT_SCRIPT, &key, err))
+        return err->status;
     return level_script_write(&s, path, err);
+}
+
+/* What the page adds up. */
+static enum status write_scripts(const struct levels_job *j, struct err *err)
+{
+    struct script_points chosen = {NULL, 0, 0};
+    struct level_days days = {.day_count = 0};
+    struct relit_light relit = {.places = 0};
+    if (!level_script_choose(&chosen, &j->sensors, err) &&
+        !level_days_make(&days, &j->states, j->files.day ? &j->day : NULL, PER_HOUR, err)) {
+        const struct relit_sources from = {.light = &j->light,
+                                           .views = &j->views,
+                                           .states = &j->states,
+                                           .params = &j->params,
+                                           .days = &days,
+                                           .points = &j->levels,
+                                           .chosen = chosen.chosen,
+                                           .chosen_count = chosen.count,
+                                           .scale = j->scale.is.scale};
+        if (!relit_light_make(&relit, &from, err)) write_relit(j, &relit, &chosen, &days, err);
+    }
+    relit_light_release(&relit);
+    level_days_release(&days);
+    free(chosen.chosen);
+    return err->status;
 }
 
 /* The film of the day that was asked for: OUT/DATE.mp4. */
@@ -114,7 +150,7 @@ static enum status write_others(struct levels_job *j, struct err *err)
         product_path_in(path, j->out, PRODUCT_OPENING_SCHEDULE, &key, err))
         return err->status;
     if (quantities_write_openings(&j->plan, j->scene.axes.metric, path, err)) return err->status;
-    return write_script(j, err);
+    return write_scripts(j, err);
 }
 
 static enum status resolve_places(struct levels_job *j, struct err *err)

@@ -17,24 +17,48 @@
  *         OUT/STATE.PHOTO.svg                 illuminance of what a photograph shows, over the photograph
  *         OUT/DATE.mp4                        the day DATE as a film
  *         OUT/levels.js                       light by groups and hours, for the page of light levels
+ *         OUT/relit.js                        the same of what photographs show; with --from it is read
  *         OUT/sheet.tsv                       illuminance of rooms, faces and places in each state */
 #include "common/base/cli.h"
+#include "common/base/scan.h"
 #include "stages/light_levels/levels.h"
+#include "stages/light_levels/relit_picture.h"
 
 #define PARAM_STRUCT struct levels_params
 static const struct param levels_param_table[] = {LEVELS_PARAMS(PARAM_ROW) PARAM_END};
 #undef PARAM_STRUCT
 
+static enum status check_usage(const struct levels_job *job, struct relit_picture_files *p, const char *exposure,
+                               struct err *err)
+{
+    const struct light_change_files *light = &job->files.light;
+    p->states = job->files.states;
+    p->out = job->out;
+    p->photo = job->files.shown.names.count ? job->files.shown.names.items[0] : NULL;
+    if (p->from && (!p->state || job->files.shown.names.count != 1))
+        return err_set(err, ST_USAGE, "--from needs --state and one --photo.");
+    if (exposure && (!scan_double(exposure, &p->exposure) || !(p->exposure > 0)))
+        return err_set(err, ST_USAGE, "--exposure %s: wanted a number above 0.", exposure);
+    if (!p->from && (p->state || exposure))
+        return err_set(err, ST_USAGE, "--state and --exposure go with --from.");
+    if (!p->from && (!light->base || !job->files.plan || !light->axes || !light->vita))
+        return err_set(err, ST_USAGE, "wanted --model, --plan, --axes and --vita, or --from. See --help.");
+    if (light->edited && !light->map) return err_set(err, ST_USAGE, "--edited needs --map, the texture.txt of the edit.");
+    return ST_OK;
+}
+
 int main(int argc, char **argv)
 {
     struct levels_job job = {.params = LEVELS_PARAMS_DEFAULT};
     struct light_change_files *light = &job.files.light;
+    struct relit_picture_files picture = {.from = NULL};
+    const char *exposure = NULL;
     const struct cli_opt opts[] = {
         CLI_ABOUT("How bright rooms and places are, by groups of light."),
-        CLI_STR("model", &light->base, CLI_REQUIRED, "the unedited model, model.txt"),
-        CLI_STR("plan", &job.files.plan, CLI_REQUIRED, "rooms of the model, or of the edited one, plan.txt"),
-        CLI_STR("axes", &light->axes, CLI_REQUIRED, "the models' frame, axes.txt"),
-        CLI_STR("vita", &light->vita, CLI_REQUIRED, "folder of the unedited view-independent atlas"),
+        CLI_STR("model", &light->base, CLI_OPTIONAL, "the unedited model, model.txt"),
+        CLI_STR("plan", &job.files.plan, CLI_OPTIONAL, "rooms of the model, or of the edited one, plan.txt"),
+        CLI_STR("axes", &light->axes, CLI_OPTIONAL, "the models' frame, axes.txt"),
+        CLI_STR("vita", &light->vita, CLI_OPTIONAL, "folder of the unedited view-independent atlas"),
         CLI_STR("outdoors", &light->outdoors, CLI_OPTIONAL, "what lies outside, by direction; without it, it is dark"),
         CLI_STR("lights", &light->lights, CLI_OPTIONAL, "lamps and openings, lights.txt"),
         CLI_STR("fit", &job.files.fit, CLI_OPTIONAL,
@@ -64,16 +88,24 @@ int main(int argc, char **argv)
                  "with --views: photo to draw illuminance over; repeat for several"),
         CLI_STR("pictures", &job.files.shown.pictures, CLI_OPTIONAL,
                 "folder of pictures of the edit, which are drawn over where they exist"),
+        CLI_STR("from", &picture.from, CLI_OPTIONAL,
+                "instead: draw one photo in a state, of a folder that was written before; OUT is a PNG"),
+        CLI_STR("state", &picture.state, CLI_OPTIONAL,
+                "with --from: name of a state, or what follows it in states.txt, such as \"lamps off sky photographed\""),
+        CLI_STR("exposure", &exposure, CLI_OPTIONAL,
+                "with --from: exposure, times that of the photograph; without it the room is well exposed"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write to"),
         CLI_PARAMS(levels_param_table, &job.params, NULL),
         CLI_END,
     };
     struct err err = ERR_INIT;
     if (cli_parse(argc, argv, "light_levels", opts, &job.prov, &err) == CLI_RUN) {
-        if (light->edited && !light->map)
-            err_set(&err, ST_USAGE, "--edited needs --map, the texture.txt of the edit.");
-        else
-            levels_run(&job, &err);
+        if (!check_usage(&job, &picture, exposure, &err)) {
+            if (picture.from)
+                relit_picture_make(&picture, &err);
+            else
+                levels_run(&job, &err);
+        }
     }
     err_report(&err);
     levels_release(&job);

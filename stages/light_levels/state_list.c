@@ -131,15 +131,11 @@ static enum status begin_state(struct state_list *l, const char *name, struct er
     return ST_OK;
 }
 
-static enum status read_state(struct state_list *l, struct textfile *t, struct err *err)
+/* Of the last state. */
+static enum status read_options(struct state_list *l, struct textfile *t, struct err *err)
 {
-    char *word;
-    if (textfile_word(t, "a state's name", &word, err)) return err->status;
-    if (!scan_is_name(word))
-        return textfile_error(t, err, word, "a name of letters, digits, _ and -, which does not begin with -");
-    if (has_name(l, word)) return textfile_error(t, err, word, "a name that no other state has");
-    if (begin_state(l, word, err)) return err->status;
     struct light_state *s = &l->items[l->count - 1];
+    char *word;
     s->line = t->line;
     while (!err->status && textfile_more(t)) {
         if (textfile_word(t, "an option", &word, err)) break;
@@ -155,6 +151,16 @@ static enum status read_state(struct state_list *l, struct textfile *t, struct e
             textfile_error(t, err, word, "lamps on|off, lamp NAME FACTOR, sky SKY or blind WINDOW PART");
     }
     return err->status;
+}
+
+static enum status read_state(struct state_list *l, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (textfile_word(t, "a state's name", &word, err)) return err->status;
+    if (!scan_is_name(word))
+        return textfile_error(t, err, word, "a name of letters, digits, _ and -, which does not begin with -");
+    if (has_name(l, word)) return textfile_error(t, err, word, "a name that no other state has");
+    return begin_state(l, word, err) ? err->status : read_options(l, t, err);
 }
 
 static enum status read_line(struct state_list *l, struct textfile *t, struct provenance *prov, struct err *err)
@@ -204,6 +210,34 @@ enum status state_list_read(struct state_list *l, const char *path, struct prove
             textfile_end(&t, err);
         while (!err->status && textfile_next(&t)) read_line(l, &t, prov, err);
     }
+    textfile_release(&t);
+    if (err->status) state_list_release(l);
+    return err->status;
+}
+
+const struct light_state *state_list_find(const struct state_list *l, const char *name)
+{
+    for (int i = 0; i < l->count; i++)
+        if (!strcmp(l->items[i].name, name)) return &l->items[i];
+    return NULL;
+}
+
+enum status state_list_read_words(struct state_list *l, const char *words, struct err *err)
+{
+    static const char head[] = "state -- "; /* a name that no other state has */
+    struct textfile t = {0};
+    struct file_bytes bytes = {malloc(sizeof head + strlen(words)), sizeof head - 1 + strlen(words)};
+    if (!bytes.bytes) return err_nomem(err, "a state", bytes.size);
+    strcpy(bytes.bytes, head);
+    strcat(bytes.bytes, words);
+    if (!state_list_read(l, NULL, NULL, err) && !textfile_take(&t, &bytes, "--state", err)) {
+        l->has_site = true;
+        if (!textfile_next(&t) || strchr(words, '\n'))
+            err_set(err, ST_USAGE, "--state: wanted one line.");
+        else if (!begin_state(l, "--", err) && !textfile_expect(&t, "state", err) && !textfile_expect(&t, "--", err))
+            read_options(l, &t, err);
+    }
+    file_bytes_release(&bytes);
     textfile_release(&t);
     if (err->status) state_list_release(l);
     return err->status;

@@ -35,10 +35,16 @@ static enum status put_data(struct page *page, const struct levels_sources *from
                             struct err *err)
 {
     struct file_bytes data = {0};
-    char path[FILE_PATH];
+    char path[FILE_PATH], relit[FILE_PATH];
     if (!has_product(path, from, v, PRODUCT_LIGHT_SCRIPT)) return ST_OK;
     if (file_bytes_read(&data, path, err)) return err->status;
-    fprintf(page->to, "<script>\nvariants.push({name: '%s'});\n", v->name);
+    fprintf(page->to, "<script>\nvariants.push({name: '%s'", v->name);
+    if (has_product(relit, from, v, PRODUCT_LIGHT_RELIT)) {
+        fputs(", relit: '", page->to);
+        html_address(page->to, v->address);
+        fputs(*v->address ? "/relit.js'" : "relit.js'", page->to);
+    }
+    fputs("});\n", page->to);
     fwrite(data.bytes, 1, data.size, page->to);
     fputs("</script>\n", page->to);
     file_bytes_release(&data);
@@ -69,6 +75,8 @@ static void put_controls(FILE *to)
           "show is in their own unit, planned lamps and computed skies are in lx: their sum needs a measured point "
           "(lux.txt).</p>\n"
           "<div id=\"lamps\"></div>\n</fieldset>\n"
+          "<fieldset id=\"windows\"><legend>Blinds</legend>\n<p class=\"muted\">How much of its light each window "
+          "lets through.</p>\n<div id=\"blinds\"></div>\n</fieldset>\n"
           "<fieldset id=\"edits\"><legend>Edit</legend>\n<label>Edit <select id=\"edit\"></select></label>\n"
           "<div id=\"compare\"><label>Show <select id=\"show\"><option value=\"after\">after</option><option "
           "value=\"before\">before</option><option value=\"difference\">difference</option></select></label></div>\n"
@@ -78,7 +86,12 @@ static void put_controls(FILE *to)
           "<p class=\"muted\" id=\"unit\"></p>\n<p role=\"status\"><span id=\"said\"></span> <span "
           "id=\"point\"></span></p>\n"
           "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Table of light levels\"><table "
-          "class=\"values\" id=\"values\"></table></div>\n</div>\n</div>\n</section>\n",
+          "class=\"values\" id=\"values\"></table></div>\n"
+          "<div id=\"in-photos\"><h3>In the photographs</h3>\n<p class=\"muted\">The photographs, in this light. "
+          "<label>Exposure <select id=\"exposure\"><option value=\"own\">of each picture its own</option><option "
+          "value=\"kept\">as it is now</option><option value=\"photo\">as the photograph</option></select></label></p>\n"
+          "<div class=\"relit\" id=\"relit\"></div></div>\n"
+          "</div>\n</div>\n</section>\n",
           to);
 }
 
@@ -247,7 +260,9 @@ static enum status put_body(struct page *page, const struct levels_sources *from
         struct levels_variant v;
         if (!find_variant(&v, edits->names[i], err)) put_data(page, from, &v, err);
     }
-    if (err->status || page_put_part(page, "script", "levels.js", err)) return err->status;
+    if (err->status || page_put_part(page, "script", "relit.js", err) ||
+        page_put_part(page, "script", "levels.js", err))
+        return err->status;
     fputs("</body>\n</html>\n", to);
     return ST_OK;
 }

@@ -23,23 +23,15 @@ const signed = (v) => (v > 0 ? '+' : v < 0 ? '−' : '') + shown(Math.abs(v));
 
 // ------------------------------------------------------------------------------------------------------------- data
 
-const decode = ({low, high, data}) => {
-    const bytes = atob(data), count = bytes.length / 2, values = new Float64Array(count);
-    const span = Math.log(high / low) / 65534;
-    for (let i = 0; i < count; i++) {
-        const n = bytes.charCodeAt(2 * i) + 256 * bytes.charCodeAt(2 * i + 1);
-        values[i] = n ? low * Math.exp(span * (n - 1)) : 0;
-    }
-    return values;
-};
+const decode = ({high, most, data}) => (most === undefined ? lightOf(data, high) : signedOf(data, most));
 
 class Variant {
-    constructor(data, name) {
-        Object.assign(this, data, {name, count: data.points.length / 2});
+    constructor(data, name, relit) {
+        Object.assign(this, data, {name, relit, count: data.points.length / 2});
         this.lamps = data.lamps.map((l) => ({name: l.name, planned: !!l.planned, light: decode(l.light)}));
-        this.photographed = decode(data.photographed);
-        this.overcast = decode(data.overcast);
-        this.days = data.days.map((d) => ({...d, light: decode(d.light)}));
+        this.windows = data.windows.map((w) => ({name: w.name, photographed: decode(w.photographed),
+            level: w.level && decode(w.level), parts: (w.parts || []).map(decode)}));
+        this.suns = data.suns.map((s) => runsOf(s, this.count));
         this.at = new Map();
         for (let i = 0; i < this.count; i++) this.at.set(this.key(i), i);
     }
@@ -52,18 +44,33 @@ class Variant {
     // Illuminance at each point. Without a scale, light of the photographs cannot be added to what is in lx.
     values(choice) {
         const to = new Float64Array(this.count), factor = this.scale > 0 ? this.scale : 1;
-        const add = (light, by, from = 0) => {
-            for (let i = 0; by && i < this.count; i++) to[i] += by * light[from + i];
+        const add = (light, by) => {
+            for (let i = 0; by && i < this.count; i++) to[i] += by * light[i];
         };
         const photos = this.scale > 0 || !choice.isAbsolute();
         for (const lamp of this.lamps)
             if (photos || lamp.planned) add(lamp.light, (lamp.planned ? 1 : factor) * choice.lamp(lamp.name));
-        if (choice.sky === 'photographed' && photos) add(this.photographed, factor);
-        if (choice.sky === 'overcast') add(this.overcast, 1);
-        const day = this.days[choice.day];
-        if (choice.sky === 'hour' && day)
-            add(day.light, 1, (choice.hour * 3 + choice.cover) * this.count);
+        const photographed = choice.sky === 'photographed' && photos, sky = this.skies[choice.skyNumber()];
+        let part = 0;
+        for (const w of this.windows) {
+            const blind = choice.blind(w.name);
+            if (photographed) add(w.photographed, factor * blind);
+            for (let k = 0; sky && w.level && k < w.parts.length; k++)
+                for (let i = 0; i < this.count; i++) to[i] += blind * sky.mixes[part + k] * w.level[i] * w.parts[k][i];
+            part += w.parts.length;
+        }
+        const shade = sky && this.suns[sky.shade];
+        for (let i = 0; shade && i < this.count; i++)
+            if (shade[i]) to[i] += choice.blind(this.windows[shade[i] - 1].name) * sky.sun;
         return to;
+    }
+
+    // By what a mean is multiplied for the ends of its interval.
+    ends(choice) {
+        const lamps = this.lamps.filter((l) => choice.lamp(l.name) > 0);
+        const isPlanned = lamps.some((l) => l.planned), photos = this.scale > 0 || !choice.isAbsolute();
+        const isRelative = photos && (choice.sky === 'photographed' || lamps.some((l) => !l.planned));
+        return this.intervals[(isRelative ? 1 : 0) + (isPlanned ? 2 : 0)];
     }
 
     // Mean, least and most of each room's work plane and of each place.
@@ -263,8 +270,15 @@ class Plan {
 class Choice {
     constructor() {
         Object.assign(this, {sky: 'photographed', day: 0, hour: 0, cover: 0, edit: 0, show: 'after', factors: new Map(),
-            planned: []});
+            planned: [], blinds: new Map(), skies: []});
     }
+    blind(name) { return this.blinds.has(name) ? this.blinds.get(name) : 1; }
+    // The number of the computed sky that shines; -1: none.
+    skyNumber() {
+        if (this.sky === 'overcast') return 0;
+        return this.sky === 'hour' && this.skies.length ? this.skies[this.day][3 * this.hour + this.cover] : -1;
+    }
+    shownVariant() { return this.show === 'before' ? 0 : this.edit; }
     lamp(name) { return this.factors.has(name) ? this.factors.get(name) : 1; }
     // Whether something shines that is in lx: a computed sky, or a planned lamp.
     isAbsolute() { return this.sky === 'overcast' || this.sky === 'hour' || this.planned.some((n) => this.lamp(n) > 0); }
@@ -283,8 +297,10 @@ class Page {
         this.addVariants();
         this.addSkies();
         this.addLamps();
+        this.addBlinds();
         this.addCursor();
         this.pictures = new Pictures(variants);
+        this.relit = new RelitPhotos(variants);
         this.update();
     }
 
@@ -308,7 +324,9 @@ class Page {
     }
 
     addSkies() {
-        const c = this.choice, days = this.variants[0].days, change = (id, act) => {
+        const c = this.choice, days = this.variants[0].days;
+        c.skies = days.map((d) => d.skies);
+        const change = (id, act) => {
             byId(id).addEventListener('input', () => { act(byId(id)); this.update(); });
         };
         days.forEach((d, i) => byId('day').append(make('option', {value: i}, dateOf(d.date))));
@@ -380,6 +398,24 @@ class Page {
         names.forEach((name) => c.factors.set(name, c.planned.includes(name) ? 0 : 1));
     }
 
+    // A blind for each window of any variant; the last one of each has no pane.
+    addBlinds() {
+        const names = [...new Set(this.variants.flatMap((v) => v.windows.slice(0, -1).map((w) => w.name)))];
+        const box = byId('blinds'), c = this.choice;
+        names.forEach((name, i) => {
+            const output = make('output', {for: `blind${i}`}, '100 %');
+            const input = make('input', {type: 'range', min: 0, max: 100, step: 5, value: 100, id: `blind${i}`});
+            input.addEventListener('input', () => {
+                c.blinds.set(name, Number(input.value) / 100);
+                output.textContent = `${input.value} %`;
+                input.setAttribute('aria-valuetext', `${input.value} percent of the light`);
+                this.update();
+            });
+            box.append(make('label', {for: `blind${i}`}, words(name), output), input);
+        });
+        byId('windows').hidden = !names.length;
+    }
+
     dim(i, percent) {
         const d = this.dimmers[i];
         d.input.value = percent;
@@ -446,6 +482,7 @@ class Page {
         this.plan.draw(show.variant, show);
         this.putKey(show);
         this.putTable(show.unit);
+        this.relit.show(c);
     }
 
     sayHour(day) {
@@ -474,11 +511,11 @@ class Page {
         const c = this.choice, base = this.variants[0], edited = this.variants[c.edit];
         const unit = edited.unit(c), rows = edited.rows(edited.values(c)), was = c.edit ? base.rows(base.values(c)) : [];
         const name = (r) => r.kind === 'place' ? words(r.name) : `${words(r.name)}, work plane`;
-        const head = ['', `mean (${unit})`, 'least', 'most', 'uniformity'];
+        const head = ['', `mean (${unit})`, '95 % interval', 'least', 'most', 'uniformity'], ends = edited.ends(c);
         if (c.sky === 'overcast') head.push('daylight factor');
         if (c.edit) head.push('mean before', 'difference');
         const tableRows = rows.map((r) => {
-            const cells = [shown(r.mean), shown(r.least), shown(r.most), r.uniformity.toFixed(2)];
+            const cells = [shown(r.mean), `${shown(ends[0] * r.mean)} to ${shown(ends[1] * r.mean)}`, shown(r.least), shown(r.most), r.uniformity.toFixed(2)];
             const before = was.find((o) => o.kind === r.kind && o.name === r.name);
             if (c.sky === 'overcast') cells.push(this.lampsShine() ? '–' : `${(100 * r.mean / base.overcastLux).toFixed(2)} %`);
             if (c.edit) cells.push(before ? shown(before.mean) : '–', before ? signed(r.mean - before.mean) : '–');
@@ -551,5 +588,5 @@ class Pictures {
 
 if (variants.length) {
     document.documentElement.classList.add('js');
-    window.levelsPage = new Page(variants.map((v) => new Variant(v.data, v.name)));
+    window.levelsPage = new Page(variants.map((v) => new Variant(v.data, v.name, v.relit)));
 }
