@@ -7,8 +7,6 @@
 #include <string.h>
 
 #include "common/base/array.h"
-#include "common/base/parallel.h"
-#include "stages/light_levels/rows.h"
 
 enum { YEAR = 2025, DAY = 24 };
 
@@ -71,48 +69,4 @@ void level_days_release(struct level_days *d)
 {
     free(d->hours);
     *d = (struct level_days){.day_count = 0};
-}
-
-void level_hour_weights(struct state_weights *w, const struct level_hour *hour, enum sky_cover cover,
-                        const struct state_list *states, const struct light_groups *groups,
-                        const struct levels_params *params)
-{
-    const struct sky_luminance sky = sky_of_cover(cover, &hour->sun, states->north, params->ground);
-    memset(w->absolute, 0, (size_t)groups->count * sizeof *w->absolute);
-    level_weights_add_sky(w, &sky, groups, params);
-}
-
-struct hour_sums {
-    float *to;
-    const struct level_points *points;
-    const int *chosen;
-    const struct state_weights *w;
-    const struct model_field *field;
-};
-
-static void sum_some(void *ctx, size_t begin, size_t end, int thread)
-{
-    const struct hour_sums *j = ctx;
-    (void)thread;
-    for (size_t k = begin; k < end; k++) {
-        double sums[2];
-        level_points_sum(sums, j->points, j->chosen[k], j->w, j->field);
-        j->to[k] = (float)sums[1];
-    }
-}
-
-enum status level_days_light(float *to, const struct level_days *d, const struct level_points *points,
-                             const int *chosen, int count, const struct level_light *light,
-                             const struct state_list *states, const struct levels_params *params, struct err *err)
-{
-    struct state_weights w = {0};
-    level_weights_init(&w, &light->groups, err);
-    for (int i = 0; !err->status && i < LEVEL_COVERS * d->hour_count; i++) {
-        const struct hour_sums j = {to + (size_t)i * (size_t)count, points, chosen, &w, light->groups.field};
-        level_hour_weights(&w, &d->hours[i / LEVEL_COVERS], (enum sky_cover)(i % LEVEL_COVERS), states, &light->groups,
-                           params);
-        parallel_for((size_t)count, 16, sum_some, (void *)&j);
-    }
-    level_weights_release(&w);
-    return err->status;
 }

@@ -1,4 +1,4 @@
-/* level_days.h - the hours of some days, with the sun at each, and the light that they bring to points. */
+/* level_days.h - the hours of some days, with the sun at each. */
 #ifndef REMODEL_LEVEL_DAYS_H
 #define REMODEL_LEVEL_DAYS_H
 
@@ -28,16 +28,5 @@ enum status level_date_read(struct sun_time *date, const char *text, struct err 
 enum status level_days_make(struct level_days *d, const struct state_list *states, const struct sun_time *more,
                             int per_hour, struct err *err);
 void level_days_release(struct level_days *d);
-
-/* Sets the sky of an hour; w was initialised and is overwritten. */
-void level_hour_weights(struct state_weights *w, const struct level_hour *hour, enum sky_cover cover,
-                        const struct state_list *states, const struct light_groups *groups,
-                        const struct levels_params *params);
-
-/* lx at some points: to[(hour * LEVEL_COVERS + cover) * count + k], of point chosen[k]. Same bits for any number of
- * threads. ST_NOMEM. */
-enum status level_days_light(float *to, const struct level_days *d, const struct level_points *points,
-                             const int *chosen, int count, const struct level_light *light,
-                             const struct state_list *states, const struct levels_params *params, struct err *err);
 
 #endif

@@ -369,7 +369,7 @@ static enum status read_of_photo(struct reading *in, const char *word, struct er
     struct relit_light *r = in->r;
     struct relit_photo *p = &r->photos[r->photo_count - 1];
     const size_t pixels = (size_t)p->width * (size_t)p->height, half = (size_t)(p->width / 2) * (size_t)(p->height / 2);
-    int shade;
+    int shade = 0;
     if (!strcmp(word, "pixels"))
         return read_runs(in, p->pixels, pixels,
                          r->window_count + r->lamp_count + r->face_count + r->places - r->things, err);

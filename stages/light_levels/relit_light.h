@@ -47,7 +47,7 @@ struct relit_face {
     int *places; /* of each cell, -1: no photograph shows it; owned */
 };
 
-enum { RELIT_LENS = 16 }; /* px between the rays that are kept */
+enum { RELIT_LENS = 8 }; /* px between the rays that are kept */
 struct relit_photo {
     char *name; /* owned */
     int width, height;

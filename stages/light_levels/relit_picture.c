@@ -377,7 +377,7 @@ static enum status find_photo(const struct relit_photo **photo, const struct rel
 static enum status draw_file(const struct relit_light *r, const struct light_state *state,
                              const struct relit_picture_files *f, struct err *err)
 {
-    const struct relit_photo *photo;
+    const struct relit_photo *photo = NULL;
     struct relit_sum sum = {0};
     unsigned char *rgb = NULL;
     double exposure = f->exposure;

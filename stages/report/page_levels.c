@@ -238,6 +238,7 @@ static enum status put_body(struct page *page, const struct levels_sources *from
 {
     static const char *const styles[] = {"page.css", "levels.css"};
     FILE *to = page->to;
+    page->loads = true;
     if (page_put_head(page, from->scene, ", light levels", styles, 2, err)) return err->status;
     fputs("<p class=\"lead\">How bright it is on the work planes of the rooms, on named places and on what the "
           "photographs show, for lamps, skies and hours that you choose.</p>\n",

@@ -16,6 +16,7 @@ struct page {
     const char *parts;         /* folder of page.css, page.js, ... */
     const char *folder;        /* of the pictures; it is made */
     const char *address;       /* of that folder from the page, "" or with a / at its end */
+    bool loads;                /* it loads scripts beside it */
     const char *scene;         /* address of the scene's folder from the page, "" or with a / at its end */
     struct name_list pictures; /* files of the folder that the page shows; owned */
 };

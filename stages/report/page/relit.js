@@ -161,11 +161,11 @@ class RelitPhoto {
     }
 
     ray(x, y) {
-        const {width, height, rays} = this.photo, size = (n) => Math.floor((n + 14) / 16) + 1;
-        const columns = size(width), rows = size(height), column = x >> 4, row = y >> 4;
+        const {width, height, rays} = this.photo, size = (n) => Math.floor((n + 6) / 8) + 1;
+        const columns = size(width), rows = size(height), column = x >> 3, row = y >> 3;
         const right = Math.min(column + 1, columns - 1), below = Math.min(row + 1, rows - 1);
-        const wide = Math.min(16 * right, width - 1) - 16 * column, tall = Math.min(16 * below, height - 1) - 16 * row;
-        const a = wide > 0 ? (x - 16 * column) / wide : 0, b = tall > 0 ? (y - 16 * row) / tall : 0, to = [0, 0, 0];
+        const wide = Math.min(8 * right, width - 1) - 8 * column, tall = Math.min(8 * below, height - 1) - 8 * row;
+        const a = wide > 0 ? (x - 8 * column) / wide : 0, b = tall > 0 ? (y - 8 * row) / tall : 0, to = [0, 0, 0];
         for (let k = 0; k < 4; k++) {
             const from = 3 * ((k & 2 ? below : row) * columns + (k & 1 ? right : column));
             const weight = (k & 1 ? a : 1 - a) * (k & 2 ? b : 1 - b);
