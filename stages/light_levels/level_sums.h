@@ -10,11 +10,11 @@
 struct state_weights {
     const struct light_groups *groups; /* not owned */
     double *relative, *absolute;
-    double *windows; /* the part of daylight that each window's blind lets through */
+    double *windows;                 /* the part of daylight that each window's blind lets through */
     bool has_relative, has_absolute; /* some weight is not 0 */
     bool has_planned;                /* so is that of a planned lamp */
     struct vec3 to_sun;
-    double sun; /* lx on a surface that faces it, within the panes; 0: none */
+    double sun;        /* lx on a surface that faces it, within the panes; 0: none */
     double horizontal; /* lx, of the unobstructed horizontal under the computed sky */
 };
 

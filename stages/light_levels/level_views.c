@@ -17,6 +17,7 @@
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/capture/view_image.h"
+#include "common/image/exr.h"
 #include "common/image/luminance.h"
 #include "common/image/photo.h"
 #include "common/product/product.h"
@@ -87,10 +88,38 @@ static enum status read_picture(struct image *im, const char *folder, const char
     return err->status;
 }
 
+/* The edit's picture in the light that it makes. */
+static enum status read_relit(struct image *im, const char *folder, const char *name, struct provenance *prov,
+                              struct err *err)
+{
+    static const char *const channels[] = {"R", "G", "B"};
+    struct exr_image exr = {0};
+    char path[FILE_PATH];
+    if (!provenance_add_in(prov, "relit", folder, name, ".exr", path, err) && !exr_read(&exr, path, channels, 3, err) &&
+        !image_init(im, exr.width, exr.height, 3, err))
+        for (int c = 0; c < 3; c++)
+            for (int i = 0; i < exr.width * exr.height; i++) im->data[3 * i + c] = exr_find(&exr, channels[c])->f[i];
+    exr_image_release(&exr);
+    return err->status;
+}
+
+/* Whether all views of a photo were relit: old and new light do not go together. */
+static bool is_relit(const struct level_view_files *files, const struct scene_cameras *cameras, int photo,
+                     struct err *err)
+{
+    char path[FILE_PATH];
+    for (int k = 0; files->relit && k < cameras->set.view_count; k++) {
+        if (photo_of_view(&cameras->set, &cameras->lenses, k) != photo) continue;
+        if (file_path(path, files->relit, cameras->set.views[k].name, ".exr", err) || !path_is_file(path)) return false;
+    }
+    return files->relit != NULL;
+}
+
 static enum status read_view(struct image *im, const struct level_view_files *files, const struct view *view,
-                             struct provenance *prov, struct err *err)
+                             bool relit, struct provenance *prov, struct err *err)
 {
     char path[FILE_PATH] = "";
+    if (relit) return read_relit(im, files->relit, view->name, prov, err);
     if (files->pictures && file_path(path, files->pictures, view->name, ".jpg", err)) return err->status;
     if (*path && path_is_file(path)) return read_picture(im, files->pictures, view->name, prov, err);
     return view_image_read(im, files->views, view, prov, err);
@@ -100,13 +129,14 @@ static enum status read_photo(struct level_view *v, const struct photo_sight *s,
                               const struct scene_cameras *cameras, struct provenance *prov, struct err *err)
 {
     const int pixels = v->width * v->height, first = photo_of_view(&cameras->set, &cameras->lenses, s->camera.view_idx);
+    const bool relit = is_relit(files, cameras, first, err);
     double *sum = calloc(4 * (size_t)pixels + 1, sizeof *sum);
     if (!sum) return err_nomem(err, "a photo", 4 * (size_t)pixels * sizeof *sum);
     for (int k = 0; !err->status && k < cameras->set.view_count; k++) {
         struct image im = {0};
         struct vec3 ray;
         if (photo_of_view(&cameras->set, &cameras->lenses, k) != first) continue;
-        read_view(&im, files, &cameras->set.views[k], prov, err);
+        read_view(&im, files, &cameras->set.views[k], relit, prov, err);
         const struct looking_up l = {&cameras->set.views[k], &im, sum};
         for (int i = 0; !err->status && i < SAMPLES * pixels; i++) {
             const int x = i / SAMPLES % v->width, y = i / SAMPLES / v->width;

@@ -9,6 +9,7 @@
 struct level_view_files {
     const char *views;     /* folder of cameras and views; NULL: no pictures */
     const char *pictures;  /* folder of an edit's pictures, which stand for the views where there are any; or NULL */
+    const char *relit;     /* folder of an edit's relit pictures, which count before those; or NULL */
     struct cli_list names; /* photos; owned */
 };
 

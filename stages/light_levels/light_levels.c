@@ -39,11 +39,11 @@ static enum status check_usage(const struct levels_job *job, struct relit_pictur
         return err_set(err, ST_USAGE, "--from needs --state and one --photo.");
     if (exposure && (!scan_double(exposure, &p->exposure) || !(p->exposure > 0)))
         return err_set(err, ST_USAGE, "--exposure %s: wanted a number above 0.", exposure);
-    if (!p->from && (p->state || exposure))
-        return err_set(err, ST_USAGE, "--state and --exposure go with --from.");
+    if (!p->from && (p->state || exposure)) return err_set(err, ST_USAGE, "--state and --exposure go with --from.");
     if (!p->from && (!light->base || !job->files.plan || !light->axes || !light->vita))
         return err_set(err, ST_USAGE, "wanted --model, --plan, --axes and --vita, or --from. See --help.");
-    if (light->edited && !light->map) return err_set(err, ST_USAGE, "--edited needs --map, the texture.txt of the edit.");
+    if (light->edited && !light->map)
+        return err_set(err, ST_USAGE, "--edited needs --map, the texture.txt of the edit.");
     return ST_OK;
 }
 
@@ -88,10 +88,13 @@ int main(int argc, char **argv)
                  "with --views: photo to draw illuminance over; repeat for several"),
         CLI_STR("pictures", &job.files.shown.pictures, CLI_OPTIONAL,
                 "folder of pictures of the edit, which are drawn over where they exist"),
+        CLI_STR("relit", &job.files.shown.relit, CLI_OPTIONAL,
+                "folder of its relit pictures, which count before those where all views of a photo have one"),
         CLI_STR("from", &picture.from, CLI_OPTIONAL,
                 "instead: draw one photo in a state, of a folder that was written before; OUT is a PNG"),
-        CLI_STR("state", &picture.state, CLI_OPTIONAL,
-                "with --from: name of a state, or what follows it in states.txt, such as \"lamps off sky photographed\""),
+        CLI_STR(
+            "state", &picture.state, CLI_OPTIONAL,
+            "with --from: name of a state, or what follows it in states.txt, such as \"lamps off sky photographed\""),
         CLI_STR("exposure", &exposure, CLI_OPTIONAL,
                 "with --from: exposure, times that of the photograph; without it the room is well exposed"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write to"),

@@ -1,4 +1,4 @@
-/* relit_file.c - see relit_file.h. Names of people are percent-encoded, so that no byte of them ends a word or the text. */
+/* relit_file.c - see relit_file.h. Names are percent-encoded, so that no byte of them ends a word or the text. */
 #include "stages/light_levels/relit_file.h"
 
 #include <ctype.h>
@@ -182,7 +182,8 @@ static enum status read_bytes(struct reading *in, const char *what, struct err *
 }
 
 /* Signed numbers, or light. */
-static enum status read_values(struct reading *in, float *to, size_t count, double most, bool is_signed, struct err *err)
+static enum status read_values(struct reading *in, float *to, size_t count, double most, bool is_signed,
+                               struct err *err)
 {
     if (read_bytes(in, "numbers", err)) return err->status;
     if (in->size != 2 * count) return textfile_error(in->t, err, "another count of them", "%zu numbers", count);
@@ -227,8 +228,7 @@ static enum status read_head(struct reading *in, struct err *err)
         read_whole(in, "a count of places", MOST, &r->places, err) ||
         read_whole(in, "the first place of furniture", r->places, &r->things, err) ||
         read_whole(in, "a count of suns", MOST_SIDE, &r->shade_count, err) ||
-        textfile_expect_line(in->t, "scale", err) ||
-        textfile_number(in->t, "a scale", 0, INFINITY, &r->scale, err) ||
+        textfile_expect_line(in->t, "scale", err) || textfile_number(in->t, "a scale", 0, INFINITY, &r->scale, err) ||
         textfile_expect_line(in->t, "horizontal", err))
         return err->status;
     r->normals = calloc((size_t)(r->places - r->things) + 1, sizeof *r->normals);
@@ -296,7 +296,8 @@ static enum status read_sky(struct reading *in, struct err *err)
     if (!strcmp(word, "weather")) s->state.sky = STATE_SKY_WEATHER;
     if (s->state.sky == STATE_SKY_NONE)
         return textfile_error(in->t, err, word, "overcast, clear, partly, cloudy or weather");
-    if (read_whole(in, "a month", 12, &s->state.time.month, err) || read_whole(in, "a day", 31, &s->state.time.day, err) ||
+    if (read_whole(in, "a month", 12, &s->state.time.month, err) ||
+        read_whole(in, "a day", 31, &s->state.time.day, err) ||
         textfile_double(in->t, "an hour", &s->state.time.hour, err) ||
         textfile_number(in->t, "an illuminance", 0, INFINITY, &s->horizontal, err) ||
         textfile_number(in->t, "an illuminance", 0, INFINITY, &s->sun, err) || read_vector(in, &s->to_sun, err) ||
@@ -338,8 +339,7 @@ static enum status read_normals(struct reading *in, struct err *err)
     if (!values) return err_nomem(err, "normals", count * sizeof *values);
     if (!read_values(in, values, count, 1, true, err))
         for (int i = 0; i < r->places - r->things; i++)
-            r->normals[i] =
-                vec3_make((double)values[3 * i], (double)values[3 * i + 1], (double)values[3 * i + 2]);
+            r->normals[i] = vec3_make((double)values[3 * i], (double)values[3 * i + 1], (double)values[3 * i + 2]);
     free(values);
     return err->status;
 }
@@ -371,8 +371,8 @@ static enum status read_of_photo(struct reading *in, const char *word, struct er
     const size_t pixels = (size_t)p->width * (size_t)p->height, half = (size_t)(p->width / 2) * (size_t)(p->height / 2);
     int shade = 0;
     if (!strcmp(word, "pixels"))
-        return read_runs(in, p->pixels, pixels,
-                         r->window_count + r->lamp_count + r->face_count + r->places - r->things, err);
+        return read_runs(in, p->pixels, pixels, r->window_count + r->lamp_count + r->face_count + r->places - r->things,
+                         err);
     if (!strcmp(word, "picture")) {
         if (read_bytes(in, "a JPEG", err)) return err->status;
         free(p->jpeg);

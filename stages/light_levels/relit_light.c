@@ -71,8 +71,8 @@ static bool same_sky(const struct light_state *a, const struct light_state *b)
 {
     const double apart = a->sky == STATE_SKY_WEATHER ? 0.5 : 1e-3; /* weather is that of an hour */
     if (a->sky != b->sky || (a->sky == STATE_SKY_TIME && a->cover != b->cover)) return false;
-    return a->sky == STATE_SKY_OVERCAST || (a->time.month == b->time.month && a->time.day == b->time.day &&
-                                            fabs(a->time.hour - b->time.hour) <= apart);
+    return a->sky == STATE_SKY_OVERCAST ||
+           (a->time.month == b->time.month && a->time.day == b->time.day && fabs(a->time.hour - b->time.hour) <= apart);
 }
 
 int relit_light_find_sky(const struct relit_light *r, const struct light_state *state)
@@ -204,8 +204,15 @@ static enum status make_faces(struct relit_light *r, const struct numbering *n, 
         struct relit_face *to = &r->faces[n->face[f]];
         const struct vec3 normal = p->field->model.mesh.faces[f].normal;
         const int cells = c->columns * c->rows;
-        *to = (struct relit_face){normal, c->u, c->v, 0, {c->low[0], c->low[1]}, {c->step[0], c->step[1]}, c->columns,
-                                  c->rows, malloc(((size_t)cells + 1) * sizeof *to->places)};
+        *to = (struct relit_face){normal,
+                                  c->u,
+                                  c->v,
+                                  0,
+                                  {c->low[0], c->low[1]},
+                                  {c->step[0], c->step[1]},
+                                  c->columns,
+                                  c->rows,
+                                  malloc(((size_t)cells + 1) * sizeof *to->places)};
         if (!to->places) return err_nomem(err, "cells", (size_t)cells * sizeof *to->places);
         for (int i = 0; i < cells; i++) {
             to->places[i] = c->patch[i] < 0 ? -1 : n->place[c->patch[i]];
@@ -221,7 +228,8 @@ static enum status make_faces(struct relit_light *r, const struct numbering *n, 
 static void place_light(float *to, const struct level_light *l, int patch, int first, int end)
 {
     const size_t stride = 3 * (size_t)l->groups.count;
-    const float *radiance = l->radiosity.radiance + stride * (size_t)patch, *direct = l->rows.direct + stride * (size_t)patch;
+    const float *radiance = l->radiosity.radiance + stride * (size_t)patch,
+                *direct = l->rows.direct + stride * (size_t)patch;
     const struct rgb *rho = &l->colours[patch].reflectance;
     const double reflects[3] = {rho->r, rho->g, rho->b};
     const struct light_row *row = &l->rows.rows[patch];
@@ -304,8 +312,7 @@ static enum status add_texture(struct relit_light *r, struct err *err)
         if (f->kind == RELIT_LAMP && r->lamps[f->of].kind == RELIT_PLANNED) continue;
         for (int k = 0; k < 3 * r->places; k++) values[k] += f->values[k];
     }
-    for (int i = 0; !err->status && i < r->places; i++)
-        room[i] = (struct weighted){(double)values[3 * i + 1], 1};
+    for (int i = 0; !err->status && i < r->places; i++) room[i] = (struct weighted){(double)values[3 * i + 1], 1};
     const double median = !err->status && r->places ? weighted_percentile(room, (size_t)r->places, 0.5) : 0;
     const float least = median > 0 ? (float)(LEAST_LIGHT * median) : 1;
     for (int k = 0; !err->status && k < 3 * r->places; k++) values[k] = fmaxf(values[k], least);
@@ -315,7 +322,7 @@ static enum status add_texture(struct relit_light *r, struct err *err)
     return err->status;
 }
 
-/* ----------------------------------------------------------------------------------------------------- computed skies */
+/* --------------------------------------------------------------------------------------------------- computed skies */
 
 static double sum_sky(const struct state_weights *w, const struct light_groups *g, int window, const float *light,
                       int stride)
@@ -354,8 +361,7 @@ static void sum_points(const struct making *m)
     const size_t rows = rows_of(m->r);
     float own[2 * 146];
     for (int k = 0; k < m->r->points; k++) {
-        const float *whole =
-            m->from->points->whole + (size_t)m->from->chosen[k] * (size_t)m->from->points->groups;
+        const float *whole = m->from->points->whole + (size_t)m->from->chosen[k] * (size_t)m->from->points->groups;
         memcpy(own, whole + groups_patch(g, m->window, 0), (size_t)parts * sizeof *own);
         memcpy(own + parts, whole + groups_beam(g, m->window, 0), (size_t)parts * sizeof *own);
         for (int s = 0; s < m->r->sky_count; s++)
@@ -426,9 +432,9 @@ static void shade_rows(void *ctx, size_t begin, size_t end, int thread)
             const struct level_pixel *pixel = &s->view->pixels[2 * (int)y * s->view->width + 2 * x];
             int *to = &s->to[(int)y * width + x];
             if (pixel->surface == NO_PHOTO || pixel->surface == -1) continue;
-            const struct gather_point at = {point_of(s->view, pixel), pixel->surface >= 0
-                                                                          ? p->field->model.mesh.faces[pixel->surface].normal
-                                                                          : p->list[-2 - pixel->surface].origins[0].normal};
+            const struct gather_point at = {point_of(s->view, pixel),
+                                            pixel->surface >= 0 ? p->field->model.mesh.faces[pixel->surface].normal
+                                                                : p->list[-2 - pixel->surface].origins[0].normal};
             *to = shade_at(&s->from->light->groups, at, s->to_sun);
         }
 }
@@ -542,8 +548,7 @@ static enum status name_groups(struct relit_light *r, const struct light_groups 
     if (!r->lamps || !r->windows) return err_nomem(err, "lamps", (size_t)g->rest * sizeof *r->lamps);
     for (int i = 0; !err->status && i < g->rest; i++) add_lamp(r, RELIT_FITTED, g->field->lights.lamps[i].name, err);
     if (!err->status) add_lamp(r, RELIT_REST, "", err);
-    for (int i = 0; !err->status && i < planned; i++)
-        add_lamp(r, RELIT_PLANNED, g->planned_lamps->list[i].name, err);
+    for (int i = 0; !err->status && i < planned; i++) add_lamp(r, RELIT_PLANNED, g->planned_lamps->list[i].name, err);
     for (int v = 0; !err->status && v < g->windows_count; v++) {
         if (!(r->windows[v] = strdup(g->windows[v].name))) return err_nomem(err, "a name", strlen(g->windows[v].name));
         r->window_count++;

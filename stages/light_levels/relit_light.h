@@ -52,10 +52,10 @@ struct relit_photo {
     char *name; /* owned */
     int width, height;
     struct vec3 from;
-    float *rays;                                /* unit directions, 3 each; RELIT_LENS px apart, and at the far ends */
-    int *pixels;                                /* of each what it shows: enum relit_pixel, and numbers beyond */
-    int **shades;                               /* half as wide and high: 1 + the window that the sun comes through */
-    unsigned char *jpeg;                        /* owned, as the others */
+    float *rays;         /* unit directions, 3 each; RELIT_LENS px apart, and at the far ends */
+    int *pixels;         /* of each what it shows: enum relit_pixel, and numbers beyond */
+    int **shades;        /* half as wide and high: 1 + the window that the sun comes through */
+    unsigned char *jpeg; /* owned, as the others */
     size_t jpeg_size;
 };
 /* Numbers of pixels: 0 nothing, then 1 + window for the outdoors, then lamps, faces, places of furniture. */
@@ -63,7 +63,7 @@ struct relit_photo {
 /* {0} is the empty state; everything is owned. */
 struct relit_light {
     int places, points;
-    int things;         /* the first place of furniture */
+    int things;           /* the first place of furniture */
     struct vec3 *normals; /* of furniture */
     struct relit_field *fields;
     struct relit_lamp *lamps;
@@ -72,8 +72,8 @@ struct relit_light {
     struct relit_face *faces;
     struct relit_photo *photos;
     int field_count, lamp_count, window_count, sky_count, face_count, photo_count, part_count, shade_count;
-    int **shades; /* of points, as those of photos; owned */
-    double scale; /* lx of the photographs' unit; 0: unknown */
+    int **shades;      /* of points, as those of photos; owned */
+    double scale;      /* lx of the photographs' unit; 0: unknown */
     double horizontal; /* of the photographed sky, in that unit */
 };
 

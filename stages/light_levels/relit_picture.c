@@ -54,7 +54,8 @@ static enum status set_switches(struct relit_sum *s, const struct relit_light *r
     for (int k = 0; k < state->named_count; k++) {
         const int lamp = find_lamp(r, state->named[k].name);
         if (lamp < 0)
-            return err_set(err, ST_DATA, "found the lamp %s, which the pictures do not have; make them again: make lux.",
+            return err_set(err, ST_DATA,
+                           "found the lamp %s, which the pictures do not have; make them again: make lux.",
                            state->named[k].name);
         s->lamps[lamp] = state->named[k].factor;
     }
@@ -79,10 +80,11 @@ static enum status set_sky(struct relit_sum *s, const struct relit_light *r, con
     if (photographed || state->sky == STATE_SKY_NONE) return ST_OK;
     const int sky = relit_light_find_sky(r, state);
     if (sky < 0)
-        return err_set(err, ST_DATA,
-                       "the pictures have no sky of %d %d, %g o'clock; they have each half hour of the days on the page, "
-                       "and the skies of states.txt. Write the state there, or give DAY=, and run make lux.",
-                       state->time.month, state->time.day, state->time.hour);
+        return err_set(
+            err, ST_DATA,
+            "the pictures have no sky of %d %d, %g o'clock; they have each half hour of the days on the page, "
+            "and the skies of states.txt. Write the state there, or give DAY=, and run make lux.",
+            state->time.month, state->time.day, state->time.hour);
     *found = &r->skies[sky];
     if (state->sky == STATE_SKY_OVERCAST) *by *= state->horizontal / (*found)->state.horizontal;
     for (int i = 0; i < r->window_count; i++)
@@ -315,7 +317,8 @@ static enum status choose_exposure(struct drawing *d, struct err *err)
             const int at = y * d->p->width + x;
             const float *v = d->values + 3 * at;
             if (d->p->pixels[at] >= faces)
-                found[count++] = (float)(LUMINANCE_R * (double)v[0] + LUMINANCE_G * (double)v[1] + LUMINANCE_B * (double)v[2]);
+                found[count++] =
+                    (float)(LUMINANCE_R * (double)v[0] + LUMINANCE_G * (double)v[1] + LUMINANCE_B * (double)v[2]);
         }
     qsort(found, count, sizeof *found, compare_floats);
     const double bright = count ? (double)found[(size_t)(MOST_OF * (double)(count - 1))] : 0;
@@ -330,7 +333,8 @@ static void encode_rows(void *ctx, size_t begin, size_t end, int thread)
     const size_t row = 3 * (size_t)d->p->width;
     (void)thread;
     for (size_t i = begin * row; i < end * row; i++)
-        d->rgb[i] = (unsigned char)(255 * srgb_from_linear((float)clamp(d->exposure * (double)d->values[i], 0, 1)) + 0.5f);
+        d->rgb[i] =
+            (unsigned char)(255 * srgb_from_linear((float)clamp(d->exposure * (double)d->values[i], 0, 1)) + 0.5f);
 }
 
 enum status relit_picture_draw(unsigned char *rgb, const struct relit_light *r, const struct relit_photo *p,
@@ -369,8 +373,8 @@ static enum status find_photo(const struct relit_photo **photo, const struct rel
             return ST_OK;
         }
     if (!r->photo_count) return err_set(err, ST_DATA, "the light levels have no photographs; see LUX_PHOTOS.");
-    return err_set(err, ST_DATA, "--photo %s: found none of that name among the light levels; they have %s%s%s%s.", name,
-                   r->photos[0].name, r->photo_count > 1 ? ", " : "", r->photo_count > 1 ? r->photos[1].name : "",
+    return err_set(err, ST_DATA, "--photo %s: found none of that name among the light levels; they have %s%s%s%s.",
+                   name, r->photos[0].name, r->photo_count > 1 ? ", " : "", r->photo_count > 1 ? r->photos[1].name : "",
                    r->photo_count > 2 ? " and others" : "");
 }
 

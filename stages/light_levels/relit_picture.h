@@ -6,18 +6,18 @@
 
 /* What a state brings to the places of photographs. {0} is the empty state; owned. */
 struct relit_sum {
-    float *light;       /* 3 of each place, in the unit of the photographs, or without a scale in lx */
-    float *texture;     /* in which they were photographed; not owned */
-    double *lamps;      /* factor of each lamp */
-    double *windows;    /* of each window's outdoors, by how bright they were photographed */
-    double *blinds;     /* the part of the sun that each window lets through */
-    double sun;         /* of a surface that faces it, in the unit of light */
+    float *light;    /* 3 of each place, in the unit of the photographs, or without a scale in lx */
+    float *texture;  /* in which they were photographed; not owned */
+    double *lamps;   /* factor of each lamp */
+    double *windows; /* of each window's outdoors, by how bright they were photographed */
+    double *blinds;  /* the part of the sun that each window lets through */
+    double sun;      /* of a surface that faces it, in the unit of light */
     struct vec3 to_sun;
     int shade;
 };
 
-/* ST_DATA: the state has a lamp, a window or a sky that r does not have, or adds light in two units without a scale. The
- * caller releases s in each case. */
+/* ST_DATA: the state has a lamp, a window or a sky that r does not have, or adds light in two units without a scale.
+ * The caller releases s in each case. */
 enum status relit_sum_make(struct relit_sum *s, const struct relit_light *r, const struct light_state *state,
                            struct err *err);
 void relit_sum_release(struct relit_sum *s);

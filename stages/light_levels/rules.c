@@ -52,7 +52,8 @@ static void say_photos(struct graph *g, const struct scene_facts *f, const char 
     const int spread = all->count < SPREAD ? all->count : SPREAD;
     const char *pictures = edit ? graph_text(g, "remodel/%s/pictures", edit) : NULL;
     struct name_list named = {0};
-    bool drawn = false;
+    const char *lit = edit ? graph_text(g, "relight/%s", edit) : NULL;
+    bool drawn = false, relit = false;
     name_list_add_words(&named, scene_setting("LUX_PHOTOS"), graph_err(g));
     for (int i = 0; all->count && i < named.count; i++)
         if (strcmp(named.names[i], "all") != 0 && strcmp(named.names[i], "none") != 0 &&
@@ -70,12 +71,17 @@ static void say_photos(struct graph *g, const struct scene_facts *f, const char 
         if (!(named.count ? name_list_has(&named, "all") || name_list_has(&named, p->photo) : is_spread)) continue;
         rule_option(g, "--photo", p->photo);
         for (int k = 0; edit && k < p->count; k++) {
+            if (path_is_file(PATH(g, RELIT, .relit = lit, .name = p->views[k]))) {
+                rule_needs(g, PATH(g, RELIT_RECORD, .relit = lit, .name = p->views[k]));
+                relit = true;
+            }
             if (!path_is_file(PATH(g, PICTURE_JPEG, .pictures = pictures, .name = p->views[k]))) continue;
             rule_needs(g, PATH(g, PICTURE_RECORD, .pictures = pictures, .name = p->views[k]));
             drawn = true;
         }
     }
     if (drawn) rule_option(g, "--pictures", graph_own(g, pictures));
+    if (relit) rule_option(g, "--relit", graph_own(g, lit));
     name_list_release(&named);
 }
 

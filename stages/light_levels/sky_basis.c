@@ -1,9 +1,9 @@
 /* sky_basis.c - see sky_basis.h.
  *
- * Mathematics. Values are divided by the mean of their sky and by the mean of their place, so that they are near 1. Then
- * the sky with the largest relative error left is made orthogonal to the parts so far and becomes the next part (modified
- * Gram-Schmidt with pivots); all skies lose their share of it. Light of skies changes slowly with the hour, so that few
- * parts suffice. Parts are orthogonal and of mean square 1: sums of them do not cancel, and 16 bits hold them. */
+ * Mathematics. Values are divided by the mean of their sky and by the mean of their place, so that they are near 1.
+ * What is left of the sky with the largest relative error becomes the next part, and all skies lose their share of it
+ * (modified Gram-Schmidt with pivots). Light of skies changes slowly with the hour, so that few parts suffice. Parts
+ * are orthogonal and of mean square 1: sums of them do not cancel, and 16 bits hold them. */
 #include "stages/light_levels/sky_basis.h"
 
 #include <math.h>

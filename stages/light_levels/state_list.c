@@ -45,8 +45,8 @@ static enum status read_site(struct state_list *l, struct textfile *t, struct er
 }
 
 /* A name and a factor up to `most`. */
-static enum status read_factor(struct state_factor **list, int *count, struct textfile *t, const char *what, double most,
-                               struct err *err)
+static enum status read_factor(struct state_factor **list, int *count, struct textfile *t, const char *what,
+                               double most, struct err *err)
 {
     char *word;
     if (textfile_word(t, what, &word, err) || array_append(list, (size_t)*count, sizeof **list, "factors", err))

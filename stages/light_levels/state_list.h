@@ -61,8 +61,8 @@ struct state_list {
 enum { STATE_OVERCAST = 3, STATES_OF_EVERY_SCENE = 4 };
 #define STATE_OVERCAST_LUX 10000.0
 enum status state_list_read(struct state_list *l, const char *path, struct provenance *prov, struct err *err);
-/* The states that every scene has, and last one by the words that follow `state NAME`; it may name hours without a site.
- */
+/* The states that every scene has, and a last one by the words that follow `state NAME`, which may be of an hour
+ * without a site. ST_DATA: other words. */
 enum status state_list_read_words(struct state_list *l, const char *words, struct err *err);
 const struct light_state *state_list_find(const struct state_list *l, const char *name); /* NULL: not found */
 void state_list_release(struct state_list *l);

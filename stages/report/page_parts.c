@@ -169,12 +169,14 @@ enum status page_put_head(struct page *page, const char *title, const char *more
                           struct err *err)
 {
     FILE *to = page->to;
-    fprintf(to, "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-          "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
-          "content=\"default-src 'none'; img-src 'self' file: data:; media-src 'self' file:; style-src "
-          "'unsafe-inline'; script-src 'unsafe-inline'%s\">\n<meta name=\"generator\" content=\"remodel " REMODEL_VERSION
-          "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
-          page->loads ? " 'self' file:" : "");
+    fprintf(
+        to,
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+        "content=\"width=device-width, initial-scale=1\">\n<meta http-equiv=\"Content-Security-Policy\" "
+        "content=\"default-src 'none'; img-src 'self' file: data:; media-src 'self' file:; style-src "
+        "'unsafe-inline'; script-src 'unsafe-inline'%s\">\n<meta name=\"generator\" content=\"remodel " REMODEL_VERSION
+        "\">\n<link rel=\"icon\" href=\"data:,\">\n<title>",
+        page->loads ? " 'self' file:" : "");
     html_text(to, title);
     fprintf(to, "%s</title>\n", more);
     for (int i = 0; i < count; i++)

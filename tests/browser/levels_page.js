@@ -121,6 +121,35 @@ const tryThePictures = async (page) => {
         'await i.decode(); return i.naturalWidth; })()') > 0, 'it does not');
 };
 
+// Photographs follow lamps, blinds and hours; exposed as photographed, their own light gives the photograph back.
+const tryThePhotographs = async (page) => {
+    const LUMA = `(() => { const all = [...document.querySelectorAll('#relit canvas')].map((c) => {
+        const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+        let s = 0;
+        for (let i = 0; i < d.length; i += 4) s += d[i] + d[i + 1] + d[i + 2];
+        return s / d.length; });
+        return {all, words: [...document.querySelectorAll('#relit figcaption')].map((e) => e.textContent)}; })()`;
+    const settled = 'window.levelsPage.relit.busy === false && document.querySelectorAll("#relit canvas").length > 0';
+    const look = async (...acts) => {
+        for (const act of acts) await page.run(act);
+        await page.until(settled);
+        return page.run(LUMA);
+    };
+    const own = await look(set('exposure', 'photo'), set('sky', 'photographed'), press('on'));
+    const base = await page.run(`Promise.all(window.levelsPage.relit.lights[0] && [window.levelsPage.relit.lights[0]])
+        .then(([photos]) => photos.map((p) => p.photo.jpeg.length))`);
+    check('photographs_are_drawn', own.all.length > 0 && own.all.length === base.length && own.all.every((v) => v > 5) &&
+        own.words.every((w) => /exposed 1 times/.test(w)), JSON.stringify(own));
+    const dark = await look(set('sky', 'none'), press('off'));
+    check('without_light_they_say_so', dark.words.every((w) => /no light/.test(w)) && dark.all.every((v, i) => v < own.all[i]),
+        JSON.stringify(dark));
+    const day = await look(set('sky', 'photographed'));
+    const shut = await look(...(await page.run('document.querySelectorAll("#blinds input").length') ?
+        [set('blind0', 20)] : []));
+    check('a_blind_darkens_them', shut.all.some((v, i) => v < 0.98 * day.all[i]), JSON.stringify([day.all, shut.all]));
+    await look(set('blind0', 100), press('on'), set('exposure', 'own'));
+};
+
 const tryWithoutScripts = async (browser) => {
     const page = await browser.page('about:blank');
     await page.send('Emulation.setScriptExecutionDisabled', {value: true});
@@ -151,12 +180,13 @@ const main = async () => {
         await tryTheHours(page);
         await tryTheEdit(page, edited);
         await tryThePictures(page);
+        await tryThePhotographs(page);
         check('the_console_is_empty', !page.errors.length, page.errors.join(' | '));
         const width = await phoneWidth(browser, `file://${html}`);
         check('the_page_fits_a_phone', width <= 390, `it is ${width} px wide`);
         await tryWithoutScripts(browser);
         const links = await page.run('[...document.querySelectorAll(".plain a")].map((a) => a.getAttribute("href"))');
-        const size = [...links.map(decodeURIComponent), 'index.html']
+        const size = [...links.map(decodeURIComponent), 'index.html', 'relit.js', path.join(edit, 'relit.js')]
             .reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
         checkSize(check, size);
     } finally {

@@ -33,7 +33,7 @@ cell() { awk -F '\t' -v s="$2" -v k="$3" -v p="$4" -v c="$5" '$1 == s && $2 == k
 make_lux_has_a_sheet_of_the_room_and_of_the_edit()
 {
     local s=$O/lux/sheet.tsv e=$O/lux/dark/sheet.tsv
-    for f in "$s" "$e" $O/lux/levels.txt $O/lux/levels.exr $O/lux/noon.svg $O/lux/quantities.csv $O/lux/openings.csv; do
+    for f in "$s" "$e" $O/lux/levels.txt $O/lux/levels.exr $O/lux/relit.js $O/lux/noon.svg $O/lux/quantities.csv $O/lux/openings.csv; do
         "$B/bin/verify" --file "$f" || fail "$f is not whole"
     done
     grep -qx 'face,kind,area,reflectance' $O/lux/quantities.csv && grep -qx 'name,kind,of,width,height,sill,area,state' $O/lux/openings.csv ||
@@ -114,6 +114,38 @@ photographs_show_light_levels_with_a_key()
     for f in photographed photographed."$id"; do grep -o 'fill="#[0-9a-f]*"/>$' "$O/lux/$f.svg" | tail -60 >"$f.key"; done
     cmp photographed.key photographed."$id".key || fail "plan and photograph have different keys"
     levels 1 'none-such' --views $O/views --photo none-such --out made
+}
+
+# a photo in its own light, a lamp that is off, an hour of the page, and states that nothing is known of
+a_command_line_draws_photographs_in_any_state()
+{
+    levels 0 'exposed 1 times as the photograph' --from $O/lux --photo photo_1 --state photographed --exposure 1 --out two/own.png
+    levels 0 'exposed' --from $O/lux --photo photo_1 --state noon --states scenes/t/states.txt --out two/noon.png
+    levels 0 'exposed' --from $O/lux --photo photo_1 --state 'lamps off sky clear 6 21 12' --out two/same.png
+    cmp two/noon.png two/same.png || fail "a name and its words differ"
+    levels 0 'exposed' --from $O/lux/dark --photo photo_2 --state 'lamps off lamp new 1 blind pane 0.5' --out two/new.png
+    levels 1 'no sky of 6 21, 12.25' --from $O/lux --photo photo_1 --state 'lamps off sky clear 6 21 12.25' --out made/x.png
+    levels 1 'the lamp none-such' --from $O/lux --photo photo_1 --state 'lamp none-such 1' --out made/x.png
+    levels 1 'the window none-such' --from $O/lux --photo photo_1 --state 'blind none-such 1' --out made/x.png
+    levels 1 '--state:1: found "brightly"' --from $O/lux --photo photo_1 --state 'lamps brightly' --out made/x.png
+    levels 1 'their sum needs lux/scale.txt' --from $O/lux --photo photo_1 --state 'sky overcast 10000' --out made/x.png
+    levels 1 'found none of that name among the light levels; they have photo_1, photo_2' --from $O/lux --photo none-such --state lamps --out made/x.png
+    levels 2 'needs --state and one --photo' --from $O/lux --state lamps --out made/x.png
+    levels 2 'go with --from' --state lamps --out made/x.png
+    levels 2 '--exposure -1' --from $O/lux --photo photo_1 --state lamps --exposure -1 --out made/x.png
+}
+
+# blinds take light of the window alone; another window's name is refused
+blinds_take_their_part_of_daylight()
+{
+    printf 'remodel-states 1\nsite 52.5 13.4 1\nstate open lamps off sky overcast 10000\nstate half lamps off sky overcast 10000 blind pane 0.5\nstate shut lamps off sky overcast 10000 blind pane 0\n' >blinds.txt
+    levels 0 patches --states blinds.txt --out two/blinds
+    awk -F '\t' '$2 == "place" || $2 == "work-plane" { v[$1] = $5 } END { exit !(v["open"] > 0 && v["shut"] < v["half"] &&
+        (v["open"] + v["shut"] - 2 * v["half"]) ^ 2 < (1e-3 * v["open"]) ^ 2) }' two/blinds/sheet.tsv || { grep work-plane two/blinds/sheet.tsv; fail "blinds are wrong"; }
+    printf 'remodel-states 1\nstate odd blind none-such 0.5\n' >bad.txt
+    levels 1 'bad.txt:2: found a blind of the window none-such' --states bad.txt --out made
+    printf 'remodel-states 1\nstate odd blind pane 1.5\n' >bad.txt
+    levels 1 'bad.txt:2' --states bad.txt --out made
 }
 
 the_page_adds_groups_of_light_up()
@@ -202,4 +234,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre a_model_without_rooms_is_warned_of planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key a_command_line_draws_photographs_in_any_state blinds_take_their_part_of_daylight the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre a_model_without_rooms_is_warned_of planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done

@@ -515,7 +515,8 @@ class Page {
         if (c.sky === 'overcast') head.push('daylight factor');
         if (c.edit) head.push('mean before', 'difference');
         const tableRows = rows.map((r) => {
-            const cells = [shown(r.mean), `${shown(ends[0] * r.mean)} to ${shown(ends[1] * r.mean)}`, shown(r.least), shown(r.most), r.uniformity.toFixed(2)];
+            const cells = [shown(r.mean), `${shown(ends[0] * r.mean)} to ${shown(ends[1] * r.mean)}`, shown(r.least),
+                shown(r.most), r.uniformity.toFixed(2)];
             const before = was.find((o) => o.kind === r.kind && o.name === r.name);
             if (c.sky === 'overcast') cells.push(this.lampsShine() ? '–' : `${(100 * r.mean / base.overcastLux).toFixed(2)} %`);
             if (c.edit) cells.push(before ? shown(before.mean) : '–', before ? signed(r.mean - before.mean) : '–');

@@ -230,7 +230,8 @@ class RelitPhoto {
             } else if (number >= lamps) {
                 r = g = b = sum.lamps[number - lamps];
             } else if (number) r = g = b = sum.outdoors[number - 1];
-            const cover = number >= lamps && number < faces ? 0.4 * mean * Math.max(0, 1 - sum.lamps[number - lamps]) : 0;
+            const lamp = number >= lamps && number < faces ? sum.lamps[number - lamps] : 1;
+            const cover = 0.4 * mean * Math.max(0, 1 - lamp);
             values[3 * i] = r * base[3 * i] + cover;
             values[3 * i + 1] = g * base[3 * i + 1] + cover;
             values[3 * i + 2] = b * base[3 * i + 2] + cover;
@@ -257,7 +258,8 @@ class RelitPhoto {
         for (let y = 0; y < height; y += 4)
             for (let x = 0; x < width; x += 4) {
                 const i = y * width + x;
-                if (pixels[i] >= this.faces) found.push(0.2126 * v[3 * i] + 0.7152 * v[3 * i + 1] + 0.0722 * v[3 * i + 2]);
+                if (pixels[i] < this.faces) continue;
+                found.push(0.2126 * v[3 * i] + 0.7152 * v[3 * i + 1] + 0.0722 * v[3 * i + 2]);
             }
         found.sort((a, b) => a - b);
         const bright = found.length ? found[Math.floor(0.95 * (found.length - 1))] : 0;
@@ -281,6 +283,7 @@ class RelitPhotos {
         this.place = byId('relit');
         this.how = byId('exposure');
         this.kept = new Map();
+        this.busy = false;
         this.how.addEventListener('change', () => this.show(this.choice));
         byId('in-photos').hidden = !this.files[0];
     }
@@ -334,7 +337,8 @@ class RelitPhotos {
         p.paint(exposure);
         const dark = !sum.light.some((v) => v > 0);
         const relative = p.light.scale > 0 || !this.choice.isAbsolute();
-        const words = dark ? 'no light' : relative ? `exposed ${shown(exposure)} times as the photograph` : 'well exposed';
+        const words = dark ? 'no light' : relative ? `exposed ${shown(exposure)} times as the photograph` :
+            'well exposed';
         p.canvas.nextElementSibling.textContent = `${name}: ${words}`;
         p.canvas.setAttribute('aria-label', `Photograph ${name} in this light, ${words}`);
     }

@@ -23,14 +23,14 @@ static void skies_of_three_shapes_have_three_parts(void **state)
     (void)state;
     for (int s = 0; s < SKIES; s++)
         for (int i = 0; i < PLACES; i++)
-            values[s * PLACES + i] = (float)((1 + s) * (1 + i % 7) + (s % 5) * exp(-0.02 * i) * 40 + (s % 3) * (i % 11));
+            values[s * PLACES + i] =
+                (float)((1 + s) * (1 + i % 7) + (s % 5) * exp(-0.02 * i) * 40 + (s % 3) * (i % 11));
     assert_ok(sky_basis_make(&b, values, PLACES, SKIES, 1e-4, &err), err);
     assert_true(b.count >= 2 && b.count <= 4); /* dividing by means of skies keeps the rank */
     for (int s = 0; s < SKIES; s++)
         for (int i = 0; i < PLACES; i++) {
             double sum = 0;
-            for (int k = 0; k < b.count; k++)
-                sum += (double)b.parts[k * PLACES + i] * b.mixes[s * b.count + k];
+            for (int k = 0; k < b.count; k++) sum += (double)b.parts[k * PLACES + i] * b.mixes[s * b.count + k];
             assert_near((double)b.level[i] * sum / (double)values[s * PLACES + i], 1, 2e-4);
         }
     sky_basis_release(&b);
@@ -274,7 +274,7 @@ static bool is_off_edges(const double *direct, int pixel)
  * picture's resolution, nothing is said. */
 static void a_picture_of_an_hour_is_the_sum_over_all_parts_of_the_sky(void **state)
 {
-    static const char *const tried[] = {"lamps off sky overcast 5000", "lamps off sky overcast 10000 blind hole 0.5",
+    static const char *const tried[] = {"lamps off sky overcast 5000",  "lamps off sky overcast 10000 blind hole 0.5",
                                         "lamps off sky clear 12 21 12", "lamps off sky partly 6 21 15",
                                         "lamps off sky cloudy 3 21 10", "lamps off sky clear 3 21 10 blind hole 0.2"};
     static double direct[WIDE * HIGH];
@@ -404,9 +404,11 @@ static void damaged_files_are_refused_with_their_line(void **state)
         {"remodelRelit(String.raw`\nremodel-relit 2\n", ":2: found"},
         {"remodelRelit(String.raw`\nremodel-relit 1\nplaces 2 1 0\nscale 0\nhorizontal 1\n", "wanted `);."},
         {"remodelRelit(String.raw`\nremodel-relit 1\nplaces 2 3 0\nscale 0\nhorizontal 1\n`);\n", ":3: found \"3\""},
-        {"remodelRelit(String.raw`\nremodel-relit 1\nplaces 1 1 0\nscale 0\nhorizontal 1\nlamp a\nfield lamp 1 2 AAAA\n",
+        {"remodelRelit(String.raw`\nremodel-relit 1\nplaces 1 1 0\nscale 0\nhorizontal 1\nlamp a\nfield lamp 1 2 "
+         "AAAA\n",
          ":7: found \"1\""},
-        {"remodelRelit(String.raw`\nremodel-relit 1\nplaces 1 1 0\nscale 0\nhorizontal 1\nlamp a\nfield lamp 0 2 AAAA\n",
+        {"remodelRelit(String.raw`\nremodel-relit 1\nplaces 1 1 0\nscale 0\nhorizontal 1\nlamp a\nfield lamp 0 2 "
+         "AAAA\n",
          ":7: found \"another count"},
         {"remodelRelit(String.raw`\nremodel-relit 1\nplaces 1 1 0\nscale 0\nhorizontal 1\npixels AAAA\n",
          ":6: found \"pixels\""},
