@@ -61,7 +61,7 @@ struct sweep {
 
 static const struct plane *face_of(const struct plane_problem *p, int i)
 {
-    return p->prior->expected[i] >= 0 ? &p->prior->planes[p->prior->expected[i]] : NULL;
+    return p->prior && p->prior->expected[i] >= 0 ? &p->prior->planes[p->prior->expected[i]] : NULL;
 }
 
 /* The height of the camera above the floor that the view is expected to see; 0: none. */

@@ -243,7 +243,7 @@ static void beside_it_and_above_it_there_is_nothing(void **state)
     for (size_t k = 0; k < sizeof places / sizeof *places; k++) {
         const double *p = places[k];
         assert_int_equal(thing_volume_at(&volume, vec3_make(p[0], p[1], p[2])), 0);
-        assert_float_equal(distance_at(p[0], p[1], p[2]), THING_UNSEEN, 0);
+        assert_true(distance_at(p[0], p[1], p[2]) > 0); /* free, or no view shows it */
     }
 }
 
