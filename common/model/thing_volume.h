@@ -3,8 +3,9 @@
  * A grid of cubes (voxels) in the model's frame. Voxel (x, y, z) reaches from origin + voxel (x, y, z) to the next one;
  * its values are at [(z * size[1] + y) * size[0] + x]: id: 0: no thing; else its number in things.txt, from 1;
  * distance: of its centre from the surface that the views show, above 0 before it and below 0 behind it, in [-1, 1] of
- * a band that is a few voxels wide, and THING_UNSEEN where no view says anything, and behind the model's own surfaces. The file holds
- * the slices one below the other: channels id (uint) and distance (half), size[0] columns, size[1] size[2] rows. */
+ * a band that is a few voxels wide, and THING_UNSEEN where no view says anything, and behind the model's own
+ * surfaces. The file holds the slices one below the other: channels id (uint) and distance (half), size[0] columns,
+ * size[1] size[2] rows. */
 #ifndef REMODEL_THING_VOLUME_H
 #define REMODEL_THING_VOLUME_H
 

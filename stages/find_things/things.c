@@ -312,7 +312,8 @@ static void leave_model(uint8_t *known, struct thing_volume *v)
 }
 
 /* Fills the columns below things that stand on the floor. What no view looks through is solid there, as in a visual
- * hull: the end of a bed that no view shows, legs in the dark. The floor that views show below a table is none of it. */
+ * hull: the end of a bed that no view shows, legs in the dark. The floor that views show below a table is none of it.
+ * */
 static enum status stand(struct finder *f, const uint8_t *known, struct err *err)
 {
     struct thing_volume *v = &f->volume;

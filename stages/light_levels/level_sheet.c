@@ -3,9 +3,9 @@
  * Intervals. The mean of an area has two errors, taken as independent and lognormal: those of level_interval.h, by the
  * scale and the metre, and that of the light (level_spread.h): of lamps, sky and sun by their shares, of the model, its
  * textures and the rays, [light_levels] error, and of skies that were not photographed, sky_error. The interval is 95 %
- * of their product. Where a metre is a guess, the work plane's interval holds those of planes at both ends of the guess.
- * Figures of a year are counted again in rooms that are darker and brighter by the model's error; the interval reaches
- * from the least to the most of them. The weather is taken as it is. */
+ * of their product. Where a metre is a guess, the work plane's interval holds those of planes at both ends of the
+ * guess. Figures of a year are counted again in rooms that are darker and brighter by the model's error; the interval
+ * reaches from the least to the most of them. The weather is taken as it is. */
 #include "stages/light_levels/level_sheet.h"
 
 #include <math.h>

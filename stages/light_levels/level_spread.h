@@ -1,10 +1,10 @@
-/* level_spread.h - how wide the interval of a value is: by how much it changes with the light of each group, and how far
- * that may be off.
+/* level_spread.h - how wide the interval of a value is: by how much it changes with the light of each group, and how
+ * far that may be off.
  *
- * What a surface reflects is known from photographs, as its radiance over its irradiance: where a lamp is too bright the
- * reflectance is too low. So light that was reflected adds to a value as much as photographed, whatever lamps and sky
- * are, and errors of a group count by its direct light; in states that are not the photographed one also by the part of
- * the reflected light that the state has more or less of it. */
+ * What a surface reflects is known from photographs, as its radiance over its irradiance: where a lamp is too bright
+ * the reflectance is too low. So light that was reflected adds to a value as much as photographed, whatever lamps and
+ * sky are, and errors of a group count by its direct light; in states that are not the photographed one also by the
+ * part of the reflected light that the state has more or less of it. */
 #ifndef REMODEL_LEVELS_SPREAD_H
 #define REMODEL_LEVELS_SPREAD_H
 

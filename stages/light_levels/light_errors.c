@@ -93,7 +93,8 @@ static enum status read_fit(struct light_errors *e, const char *path, const stru
     return err->status;
 }
 
-/* -------------------------------------------------------------------------------------------------------- sky and sun */
+/* -------------------------------------------------------------------------------------------------------- sky and
+ * sun */
 
 static void set_windows(struct light_errors *e, const struct light_groups *g, int first, struct group_error error)
 {

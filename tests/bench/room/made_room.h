@@ -158,7 +158,7 @@ struct made_room {
     int seed;
     char prefix[8]; /* of all names, where it is a room of a house; otherwise "" */
     bool blank;     /* walls without a texture that features match on */
-    double scale; /* size of the photos, of the size in cameras.txt */
+    double scale;   /* size of the photos, of the size in cameras.txt */
     enum made_shape shape;
     double wide, deep; /* of the rectangle around the outer walls' centre lines */
     double divide;     /* two rooms: y of the wall between them */

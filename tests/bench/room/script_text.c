@@ -1,7 +1,7 @@
 /* script_text.c - what a person writes of a made room: the model script, its edits, the scale, furniture and lamps.
  *
- * Pixels are those of photos of the size that scene.cfg sets, half of that in cameras.txt (MADE_SCALE) or smaller. The model has the axes
- * of the scene (photos.c), so a move has the same DX and DY in both. */
+ * Pixels are those of photos of the size that scene.cfg sets, half of that in cameras.txt (MADE_SCALE) or smaller.
+ * The model has the axes of the scene (photos.c), so a move has the same DX and DY in both. */
 #include "tests/bench/room/made_room.h"
 
 static void write_mark(FILE *to, const struct made_mark *m)

@@ -1,8 +1,9 @@
 /* small.c - the same room in fewer and smaller photos, for benches of many rooms.
  *
  * The photo that shows least of what the others do not show is left out, and so on, as long as the photos that decide
- * the model's axes look north (photos.c). A surface point that n photos show counts as 1 / n^2. Photos in which openings
- * and lamps are marked stay. If nobody could mark the room and its lamps in what is left, one photo less is left out. */
+ * the model's axes look north (photos.c). A surface point that n photos show counts as 1 / n^2. Photos in which
+ * openings and lamps are marked stay. If nobody could mark the room and its lamps in what is left, one photo less is
+ * left out. */
 #include <string.h>
 
 #include "tests/bench/room/sight.h"

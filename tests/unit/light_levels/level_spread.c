@@ -1,5 +1,5 @@
-/* level_spread.c - intervals by shares of light: what fit.txt and sky.txt say becomes errors of groups, and these widen a
- * value by the group's direct light, and in other states by what the state reflects of it. */
+/* level_spread.c - intervals by shares of light: what fit.txt and sky.txt say becomes errors of groups, and these
+ * widen a value by the group's direct light, and in other states by what the state reflects of it. */
 #include "tests/unit/level_room.h"
 
 #include "stages/light_levels/level_spread.h"
@@ -106,12 +106,14 @@ static void a_lamp_that_the_scene_does_not_have_is_an_error(void **state)
     provenance_release(&prov);
 }
 
-/* ------------------------------------------------------------------------------------------------------------ spread */
+/* ------------------------------------------------------------------------------------------------------------ spread
+ * */
 
 /* The lamps give 2 and 1 directly and the sky 1; 1, 0 and 1 of them are reflected. */
 static const float direct[GROUPS + 1] = {2, 1, 0, 1}, whole[GROUPS + 1] = {3, 1, 0, 2};
 
-/* The ends of the interval of a state's light at that point, with standard errors of 0.1 of lamps and 0.05 of the sky. */
+/* The ends of the interval of a state's light at that point, with standard errors of 0.1 of lamps and 0.05 of the
+ * sky. */
 static double sum_of(double ends[2], struct lit *l, const struct levels_params *params)
 {
     static const double factors[2] = {1, 1}, none[2] = {0, 0};
@@ -158,7 +160,8 @@ static void photographed_light_is_off_by_its_direct_parts(void **state)
 }
 
 /* The lamps alone: with reflected light of the photograph l + s = 2, half of it each, a surface's reflectance falls by
- * half of what a lamp or the sky seems brighter by. So the first lamp's 2 + 1 change by 2.5, and by -0.5 with the sky. */
+ * half of what a lamp or the sky seems brighter by. So the first lamp's 2 + 1 change by 2.5, and by -0.5 with the
+ * sky. */
 static void lamps_alone_are_off_by_what_the_sky_seems_to_give(void **state)
 {
     struct levels_params params = LEVELS_PARAMS_DEFAULT;
