@@ -91,7 +91,7 @@ static enum status read_outline(struct marks_reader *r, int name, struct err *er
     int corners = 0;
     if (read_photo(&camera, &view, r, err)) return err->status;
     do corners++;
-    while (!read_pixel(r, name, &camera, view, err) && (textfile_more(&r->t) || corners < 3));
+    while (!read_pixel(r, name, &camera, view, err) && (textfile_more(&r->t) || corners == 2)); /* one: a pixel of it */
     return err->status;
 }
 

@@ -18,6 +18,7 @@
 #include "common/product/product.h"
 #include "stages/find_things/components.h"
 #include "stages/find_things/contact_sheet.h"
+#include "stages/find_things/flat_marks.h"
 #include "stages/find_things/flat_things.h"
 #include "stages/find_things/legs.h"
 #include "stages/find_things/support.h"
@@ -368,6 +369,18 @@ static enum status add_flats(struct finder *f, struct err *err)
     return err->status;
 }
 
+static enum status place_flats(struct finder *f, struct err *err)
+{
+    const struct things_job *job = f->job;
+    const double slack = FLAT_SLACK * f->volume.grid.voxel;
+    const struct flat_pictures pictures = {job->views, job->ids, job->in, job->model, job->prov};
+    struct thing_marks all = {0};
+    if (!flat_marks_complete(&all, job->marks, &pictures, slack, err))
+        flat_things_place(&f->flats, &all, &job->in->axes, job->model, slack, err);
+    flat_marks_release(&all);
+    return err->status;
+}
+
 static enum status find_surfaces(struct finder *f, struct err *err)
 {
     const struct thing_marks *marks = f->job->marks;
@@ -387,9 +400,7 @@ static enum status find_surfaces(struct finder *f, struct err *err)
         fused.sum = NULL;
     }
     fuse_volume_release(&fused);
-    if (!err->status && !apply_marks(named, f, err) &&
-        !flat_things_place(&f->flats, marks, &f->job->in->axes, f->job->model, FLAT_SLACK * f->volume.grid.voxel,
-                           err)) {
+    if (!err->status && !apply_marks(named, f, err) && !place_flats(f, err)) {
         const size_t n = (size_t)f->count + (size_t)f->flats.count + 1;
         f->things = calloc(n, sizeof *f->things);
         f->sights = calloc(n, sizeof *f->sights);

@@ -99,6 +99,19 @@ static void names_need_no_cameras(void **state)
     is_empty(&m);
 }
 
+static void one_pixel_may_stand_for_an_outline(void **state)
+{
+    (void)state;
+    struct thing_marks m;
+    struct err err = ERR_INIT;
+    const char *text = HEAD "flat rug in a 20 15\nflat poster in a 5 5 35 5 20 25\n";
+    assert_ok(thing_marks_read(&m, scratch_write("things.txt", text), &set, &lens_list, NULL, &err), err);
+    assert_true(m.name_count == 2 && m.flat[0] && m.flat[1]);
+    assert_int_equal(m.mark_count, 4);
+    assert_int_equal(m.marks[0].name, 0);
+    thing_marks_release(&m);
+}
+
 static void outlines_are_rays_in_order(void **state)
 {
     (void)state;
@@ -205,6 +218,7 @@ int main(void)
         cmocka_unit_test(marks_are_rays_in_the_world),          cmocka_unit_test(names_need_no_cameras),
         cmocka_unit_test(what_is_wrong_is_named_with_its_line), cmocka_unit_test(marks_must_be_on_photos),
         cmocka_unit_test(a_missing_file_is_an_error),           cmocka_unit_test(outlines_are_rays_in_order),
+        cmocka_unit_test(one_pixel_may_stand_for_an_outline),
     };
     return cmocka_run_group_tests_name("thing_marks", tests, scratch_make, scratch_remove);
 }
