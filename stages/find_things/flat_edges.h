@@ -1,4 +1,4 @@
-/* flat_edges.h - the outline of what lies flat on a face, such as a rug, from one pixel of it: where its colour ends. */
+/* flat_edges.h - the outline of what lies flat on a face, such as a rug, from one pixel: where its colour ends. */
 #ifndef REMODEL_FLAT_EDGES_H
 #define REMODEL_FLAT_EDGES_H
 
