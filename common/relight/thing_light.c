@@ -16,7 +16,9 @@
  * pi sum(A L) / sum(A E), at most 0.95. Photos hardly see a side that is turned to a wall or to the floor, and give it
  * the mean of the thing: in the dark that seems nearly white. So a thing has an albedo too, that of a fit of pi L = a E
  * to its sides by least squares, which the bright ones make. Where a side seems brighter than that, and its light e is
- * less than the thing's, E, its albedo keeps (e / E)^2 of the difference. E is the mean of light weighted by light. */
+ * less than the thing's, E, its albedo keeps (e / E)^2 of the difference. E is the mean of light weighted by light.
+ * What faces down keeps its own albedo: furniture is found a little too large, so that the floor below it gets too
+ * little light before the edit, and a bright underside makes up for that. */
 #include "common/relight/thing_light.h"
 
 #include <math.h>
@@ -28,8 +30,9 @@
 #include "common/math/numbers.h"
 #include "common/relight/light_quotient.h"
 
-enum { PLACES = 8, RAYS = 16, ROUNDS = 2, SIDES = 6 }; /* places of a part as large as a side of its cube */
-enum { CUBES = 1 << 15 };                              /* in a row of the grid; what is beyond belongs to the last */
+enum { PLACES = 8, RAYS = 16, ROUNDS = 2 }; /* places of a part as large as a side of its cube */
+enum { SIDES = 6, DOWN = 5 };
+enum { CUBES = 1 << 15 }; /* in a row of the grid; what is beyond belongs to the last */
 
 struct part {
     int first, count; /* triangles, in `list` */
@@ -236,7 +239,7 @@ static void albedos_of(double albedo[SIDES], const double area[SIDES], const dou
         const double own = light[k] > 0 ? clamp(PI * sent[k] / light[k], 0, LIGHT_ALBEDO_MAX) : 0;
         const double whole = squares > 0 ? clamp(PI * products / squares, 0, LIGHT_ALBEDO_MAX) : 0;
         const double bright = area[k] > 0 && squares > 0 ? light[k] / area[k] * sum / squares : 0;
-        albedo[k] = own > whole && bright < 1 ? whole + bright * bright * (own - whole) : own;
+        albedo[k] = k != DOWN && own > whole && bright < 1 ? whole + bright * bright * (own - whole) : own;
     }
 }
 
