@@ -29,6 +29,7 @@
 #define NO_BASE "none"
 
 enum { NAME_SIZE = 1024, MAX_CORNERS = 100000 };
+static const double FARTHEST = 1e6;
 
 static void face_release(struct texture_face *face)
 {
@@ -47,6 +48,10 @@ void texture_map_release(struct texture_map *map)
         free(map->zones[i].corners);
     }
     for (int i = 0; i < map->lamp_count; i++) free(map->lamps[i].name);
+    for (int i = 0; i < map->planned_count; i++) {
+        free(map->planned[i].name);
+        free(map->planned[i].file);
+    }
     for (int i = 0; i < map->thing_count; i++) {
         free(map->things[i].name);
         free(map->things[i].from);
@@ -54,6 +59,7 @@ void texture_map_release(struct texture_map *map)
     }
     free(map->things);
     free(map->lamps);
+    free(map->planned);
     free(map->faces);
     free(map->zones);
     free(map->base);
@@ -208,6 +214,21 @@ static enum status print_lamp(FILE *to, const struct texture_lamp *lamp, struct 
     return ST_OK;
 }
 
+static enum status print_planned(FILE *to, const struct texture_planned *l, struct err *err)
+{
+    char name[NAME_SIZE], file[NAME_SIZE];
+    if (textfile_quote(l->name, name, sizeof name, err) || textfile_quote(l->file, file, sizeof file, err))
+        return err->status;
+    fprintf(to, "planned %s %s", name, file);
+    for (int k = 0; k < 3; k++) fprintf(to, " %.17g", l->at[k]);
+    for (int k = 0; k < 3; k++) fprintf(to, " %.17g", l->aim[k]);
+    fprintf(to, " %.17g", l->turn);
+    for (int k = 0; k < 3; k++) fprintf(to, " %.17g", l->colour[k]);
+    for (int k = 0; k < 3; k++) fprintf(to, " %.17g", l->scale[k]);
+    fputc('\n', to);
+    return ST_OK;
+}
+
 static enum status print_zone(FILE *to, const struct texture_zone *zone, struct err *err)
 {
     char name[NAME_SIZE];
@@ -276,6 +297,7 @@ enum status texture_map_write(const struct texture_map *map, const char *path, c
         fprintf(file.fp, "base %s\n", base);
     }
     for (int i = 0; !err->status && i < map->lamp_count; i++) print_lamp(file.fp, &map->lamps[i], err);
+    for (int i = 0; !err->status && i < map->planned_count; i++) print_planned(file.fp, &map->planned[i], err);
     for (int i = 0; !err->status && i < map->face_count; i++) print_face(file.fp, &map->faces[i], err);
     for (int i = 0; !err->status && i < map->zone_count; i++) print_zone(file.fp, &map->zones[i], err);
     for (int i = 0; !err->status && i < map->thing_count; i++) print_thing(file.fp, &map->things[i], err);
@@ -396,6 +418,31 @@ static enum status read_lamp(struct texture_map *map, struct textfile *t, struct
     return textfile_end(t, err);
 }
 
+static enum status read_numbers(double *to, int count, double min, double max, struct textfile *t, struct err *err)
+{
+    for (int k = 0; k < count; k++)
+        if (textfile_number(t, "a number", min, max, &to[k], err)) return err->status;
+    return ST_OK;
+}
+
+static enum status read_planned(struct texture_map *map, struct textfile *t, struct err *err)
+{
+    if (map->face_count || map->zone_count) return textfile_error(t, err, "planned", "lamps before the lines \"face\"");
+    if (array_append(&map->planned, (size_t)map->planned_count, sizeof *map->planned, "lamps", err)) return err->status;
+    struct texture_planned *l = &map->planned[map->planned_count++];
+    *l = (struct texture_planned){.turn = 0};
+    if (copy_word(&l->name, t, "the name of a lamp", err) || copy_word(&l->file, t, "an IES file", err))
+        return err->status;
+    for (int i = 0; i + 1 < map->planned_count; i++)
+        if (!strcmp(map->planned[i].name, l->name))
+            return textfile_error(t, err, l->name, "a lamp that no line above has");
+    if (read_numbers(l->at, 3, -FARTHEST, FARTHEST, t, err) || read_numbers(l->aim, 3, -FARTHEST, FARTHEST, t, err) ||
+        read_numbers(&l->turn, 1, -FARTHEST, FARTHEST, t, err) || read_numbers(l->colour, 3, 0, INFINITY, t, err) ||
+        read_numbers(l->scale, 3, 0, INFINITY, t, err))
+        return err->status;
+    return textfile_end(t, err);
+}
+
 static enum status read_added(struct texture_face *face, struct textfile *t, struct err *err)
 {
     int count = 0;
@@ -496,11 +543,12 @@ static enum status read_thing(struct texture_map *map, struct textfile *t, struc
 
 static enum status read_line(struct texture_map *map, struct textfile *t, struct err *err)
 {
-    static const char wanted[] = "lamp, face, gloss, place, edge, outdoors, colour, new, clear, keep or thing";
+    static const char wanted[] = "lamp, planned, face, gloss, place, edge, outdoors, colour, new, clear, keep or thing";
     char *word;
     if (textfile_word(t, wanted, &word, err)) return err->status;
     if (map->thing_count && strcmp(word, "thing")) return textfile_error(t, err, word, "lines \"thing\" at the end");
     if (!strcmp(word, "lamp")) return read_lamp(map, t, err);
+    if (!strcmp(word, "planned")) return read_planned(map, t, err);
     if (!strcmp(word, "face")) return read_face(map, t, err);
     if (!strcmp(word, "thing")) return read_thing(map, t, err);
     if (!strcmp(word, "clear") || !strcmp(word, "keep")) return read_zone(map, t, !strcmp(word, "keep"), err);

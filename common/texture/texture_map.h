@@ -9,6 +9,8 @@
  *   base E|none                                        the edit that this one stands on
  *   lamp NAME R G B                                    the radiance of this lamp of lights.txt is multiplied; 0 0 0:
  *                                                      off
+ *   planned NAME FILE X Y Z DX DY DZ TURN R G B R G B  a lamp that the edit adds, with an IES file of the scene: its
+ *                                                      place, aim, turn, the colour of its light, and factors
  *   face ID NX NY NZ OFFSET NAME                       a plane of the edited model; its gloss and its rules follow
  *   gloss matt|phong KS N|ward KS ALPHA                the gloss of the face (gloss.h); without this line the edit does
  *                                                      not say it
@@ -72,6 +74,12 @@ struct texture_lamp {
     double scale[3]; /* factors of its radiance: red, green, blue */
 };
 
+/* A lamp that the edit adds. */
+struct texture_planned {
+    char *name, *file;                               /* owned */
+    double at[3], aim[3], turn, colour[3], scale[3]; /* degrees */
+};
+
 /* A part of the building, by its footprint, in which clutter is left out or kept. */
 struct texture_zone {
     char *name; /* owned */
@@ -98,6 +106,8 @@ struct texture_map {
     char *base;                 /* NULL: none; owned */
     struct texture_lamp *lamps; /* names are unique; owned */
     int lamp_count;
+    struct texture_planned *planned; /* owned */
+    int planned_count;
     struct texture_face *faces; /* in order of id, then of the edited model's faces; owned */
     int face_count;
     struct texture_zone *zones; /* owned */

@@ -29,6 +29,8 @@ struct light_groups {
     int count;                                 /* groups */
     const struct planned_lamps *planned_lamps; /* not owned; NULL: none */
     double metre;                              /* model units of one */
+    bool scaled;                               /* lx of the photographs are known: lamps of an edit shine with theirs */
+    const double *factors; /* how bright groups of the photographs were measured; not owned; NULL: 1 */
 };
 
 #define WINDOW_ELSEWHERE "elsewhere"

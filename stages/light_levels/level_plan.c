@@ -97,21 +97,33 @@ static enum status put_area(const struct drawing *d, const struct sensor_area *a
     return err->status;
 }
 
-/* The means of named places, written where they are. */
+/* A mean and its interval, such as "desk 320 (210 to 480)". */
+static void put_mean(const struct drawing *d, double x, double y, int area, double mean)
+{
+    const double *ends = d->picture->ends ? d->picture->ends[area] : NULL;
+    const char *name = d->sensors->areas[area].name;
+    char text[256], numbers[3][32];
+    snprintf(text, sizeof text, "%s %s", name, level_scale_number(numbers[0], mean));
+    if (ends)
+        snprintf(text, sizeof text, "%s %s (%s to %s)", name, level_scale_number(numbers[0], mean),
+                 level_scale_number(numbers[1], ends[0]), level_scale_number(numbers[2], ends[1]));
+    plan_sheet_put_text(&d->sheet, x, y, "place", text);
+}
+
+/* The means of named places, written where they are, and of work planes, below their rooms' upper ends. */
 static void put_places(const struct drawing *d)
 {
     for (int k = 0; k < d->sensors->area_count; k++) {
         const struct sensor_area *a = &d->sensors->areas[k];
-        double x = 0, y = 0, mean = 0;
-        char text[128], number[32];
-        if (a->kind != SENSOR_PLACE) continue;
+        double x = 0, y = 0, mean = 0, top = -INFINITY;
+        if (a->kind != SENSOR_PLACE && a->kind != SENSOR_WORK_PLANE) continue;
         for (int i = a->first; i < a->first + a->count; i++) {
             x += d->sensors->points[i].at.x / a->count;
             y += d->sensors->points[i].at.y / a->count;
             mean += d->picture->values[i] / a->count;
+            top = fmax(top, d->sensors->points[i].at.y);
         }
-        snprintf(text, sizeof text, "%s %s", a->name, level_scale_number(number, mean));
-        plan_sheet_put_text(&d->sheet, x, y, "place", text);
+        put_mean(d, x, a->kind == SENSOR_PLACE ? y : top, k, mean);
     }
 }
 

@@ -8,7 +8,8 @@
 struct level_picture {
     const char *title, *unit;
     const double *values;
-    bool annual; /* in % of the hours of a year */
+    bool annual;             /* in % of the hours of a year */
+    const double (*ends)[2]; /* of each area: the ends of its mean's interval; NULL: none is known */
 };
 
 enum status level_plan_write(const struct level_picture *picture, const struct sensors *sensors,

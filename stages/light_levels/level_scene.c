@@ -72,7 +72,7 @@ static enum status check_planned(const struct level_scene *s, const struct model
             return err_set(err, ST_DATA,
                            "%s:%d: the lamp %s at %g %g %g lies inside of a wall or outdoors; give another place, in "
                            "the frame of the plan.",
-                           s->planned->path, l->line, l->name, l->at.x, l->at.y, l->at.z);
+                           l->on ? "the edit" : s->planned->path, l->line, l->name, l->at.x, l->at.y, l->at.z);
     }
     return ST_OK;
 }

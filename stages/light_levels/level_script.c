@@ -133,7 +133,10 @@ static enum status put_lamps(const struct writing *w, struct err *err)
     for (int i = 0; !err->status && i < r->field_count; i++) {
         if (r->fields[i].kind != RELIT_LAMP) continue;
         const struct relit_lamp *lamp = &r->lamps[r->fields[i].of];
-        fprintf(w->to, "%s{%s\"name\":", comma, lamp->kind == RELIT_PLANNED ? "\"planned\":true," : "");
+        fprintf(w->to, "%s{%s\"name\":", comma,
+                lamp->kind != RELIT_PLANNED ? ""
+                : lamp->on                  ? "\"planned\":true,\"on\":true,"
+                                            : "\"planned\":true,");
         put_text(w->to, lamp->name);
         fputs(",\"light\":", w->to);
         put_field(w, &r->fields[i], err);

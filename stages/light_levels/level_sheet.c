@@ -26,6 +26,7 @@ struct reading {
     double factors[2];
     double variance[2]; /* of the logarithm, by the scale and the metre, to both sides */
     const struct state_weights *weights;
+    double (*ends)[2]; /* of each area: the ends of its mean's interval, once it is known; owned; NULL: of a year */
 };
 
 static bool begin_reading(struct reading *r, const struct levels_job *j, const struct light_state *state,
@@ -35,7 +36,7 @@ static bool begin_reading(struct reading *r, const struct levels_job *j, const s
     const bool scaled = scale->scale > 0;
     if (!scaled && w->has_relative && w->has_absolute) return false;
     *r = (struct reading){
-        state->name, scaled || !w->has_relative ? "lx" : "relative", {scaled ? scale->scale : 1, 1}, {0, 0}, w};
+        state->name, scaled || !w->has_relative ? "lx" : "relative", {scaled ? scale->scale : 1, 1}, {0, 0}, w, NULL};
     level_interval_variance(r->variance, (struct level_origin){w->has_relative, w->has_planned}, scale,
                             &j->scene.metre);
     return true;
@@ -84,6 +85,7 @@ static enum status add_areas(struct levels_job *j, const struct reading *r, cons
         level_spread_ends(factors, &spread, mean, &j->errors, &j->light.groups, r->weights, &j->params, r->variance);
         for (int k = 0; k < 2; k++) ends[k] = factors[k] * mean;
         widen(ends, j, i, values, factors[0], factors[1]);
+        for (int k = 0; k < 2; k++) r->ends[i][k] = ends[k];
         const struct sheet_values of = {values + a->first, NULL, a->count, 0, 0, ends};
         sheet_add(&j->sheet, r->name, sensor_kind_word(a->kind), a->name, r->unit, &of, err);
     }
@@ -173,7 +175,8 @@ static enum status add_faces(struct levels_job *j, const struct reading *r, stru
 static enum status draw(const struct levels_job *j, const struct reading *r, const double *values, struct err *err)
 {
     char path[FILE_PATH];
-    const struct level_picture picture = {r->name, r->unit, values, !strncmp(r->name, "year-", 5)};
+    const struct level_picture picture = {r->name, r->unit, values, !strncmp(r->name, "year-", 5),
+                                          (const double(*)[2])r->ends};
     if (!j->sensors.count ||
         product_path_in(path, j->out, PRODUCT_LIGHT_PLAN, &(struct product_key){.name = r->name}, err))
         return err->status;
@@ -218,9 +221,14 @@ static enum status add_state(struct levels_job *j, int number, double *values, s
                 level_points_sum(sums, &j->levels, i, &w, j->light.groups.field);
                 values[i] = r.factors[0] * sums[0] + r.factors[1] * sums[1];
             }
-            if (!add_areas(j, &r, values, err) && !add_faces(j, &r, err) && !draw(j, &r, values, err))
+            if (!(r.ends = malloc(((size_t)j->sensors.area_count + 1) * sizeof *r.ends)))
+                err_nomem(err, "areas", (size_t)j->sensors.area_count * sizeof *r.ends);
+            if (!err->status && !add_areas(j, &r, values, err) && !add_faces(j, &r, err) && !draw(j, &r, values, err))
                 draw_views(j, &r, &w, err);
-            if (!err->status && number == STATE_OVERCAST) add_daylight_factor(j, &r, &w, values, err);
+            /* without rooms the sky shines in where floors and ceilings should be */
+            if (!err->status && number == STATE_OVERCAST && j->plan.room_count)
+                add_daylight_factor(j, &r, &w, values, err);
+            free(r.ends);
         }
     }
     level_weights_release(&w);
@@ -300,7 +308,7 @@ static enum status add_year(struct levels_job *j, double *values, struct err *er
         log_warn("%s has %d of the %d hours from %d to %d o'clock; the figures of the year are those of these.",
                  j->files.weather, hours, DAYLIGHT_HOURS, DAYLIGHT_FROM, DAYLIGHT_TO);
     for (int k = 0; !err->status && k < ANNUAL; k++) {
-        const struct reading r = {annual[k].name, annual[k].unit, {0, 0}, {0, 0}, NULL};
+        const struct reading r = {annual[k].name, annual[k].unit, {0, 0}, {0, 0}, NULL, NULL};
         if (!add_annual(j, k, counts, values, err) && k == 2) draw(j, &r, values, err);
     }
     free(counts);

@@ -100,7 +100,8 @@ enum status level_lamps_check(const struct state_list *states, const struct ligh
             return err_set(err, ST_DATA,
                            "%s:%d: found the planned lamp %s; lights/lights.txt has a lamp of that name, so give it "
                            "another one.",
-                           states->path, states->planned.list[i].line, states->planned.list[i].name);
+                           states->planned.list[i].on ? "the edit" : states->path, states->planned.list[i].line,
+                           states->planned.list[i].name);
     return ST_OK;
 }
 
@@ -149,14 +150,16 @@ static void set_lamps(struct state_weights *w, const struct light_state *s, cons
     const struct light_list *l = &g->field->lights;
     for (int i = 0; i < l->lamp_count; i++) w->relative[i] = s->lamps;
     w->relative[g->rest] = s->lamps;
+    for (int i = 0; i < g->count - g->planned; i++) {
+        w->absolute[g->planned + i] = g->planned_lamps->list[i].on && g->scaled && s->lamps;
+    }
     for (int k = 0; k < s->named_count; k++) {
         const int lamp = find_lamp(l, s->named[k].name);
         const int planned = g->planned_lamps ? planned_lamps_find(g->planned_lamps, s->named[k].name) : -1;
         if (lamp >= 0) w->relative[lamp] = s->named[k].factor;
-        if (planned < 0) continue;
-        w->absolute[g->planned + planned] = s->named[k].factor;
-        w->has_planned |= s->named[k].factor > 0;
+        if (planned >= 0) w->absolute[g->planned + planned] = s->named[k].factor;
     }
+    for (int i = g->planned; i < g->count; i++) w->has_planned |= w->absolute[i] > 0;
     w->has_absolute |= w->has_planned;
 }
 
@@ -184,6 +187,7 @@ enum status level_weights_make(struct state_weights *w, const struct light_state
         level_weights_add_sky(w, &sky, groups, params);
     }
     for (int i = 0; i < groups->count; i++) w->has_relative |= w->relative[i] > 0;
+    for (int i = 0; groups->factors && i < groups->patch; i++) w->relative[i] *= groups->factors[i];
     return ST_OK;
 }
 

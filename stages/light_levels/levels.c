@@ -27,6 +27,7 @@ void levels_release(struct levels_job *j)
     sheet_release(&j->sheet);
     sheet_release(&j->before);
     level_points_release(&j->levels);
+    level_factors_release(&j->factors);
     level_views_release(&j->views);
     cli_list_release(&j->files.shown.names);
     lux_scale_release(&j->scale);
@@ -43,6 +44,15 @@ void levels_release(struct levels_job *j)
 
 /* -------------------------------------------------------------------------------------------------------------- all */
 
+static enum status add_lamps_of_edit(struct levels_job *j, struct err *err)
+{
+    const struct texture_map *map = &j->scene.change.map;
+    for (int i = 0; !err->status && i < map->planned_count; i++)
+        planned_lamps_add(&j->states.planned, &map->planned[i], j->files.light.scene, &j->prov, err);
+    if (!err->status && map->planned_count) state_list_add_edit_lamps(&j->states, err);
+    return err->status;
+}
+
 static enum status read_inputs(struct levels_job *j, struct err *err)
 {
     const struct levels_files *f = &j->files;
@@ -54,7 +64,7 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
     if (state_list_read(&j->states, f->states, &j->prov, err) ||
         state_list_take_weather(&j->states, f->weather ? &j->weather : NULL, err) ||
         model_plan_read(&j->plan, f->plan, &j->prov, err) || level_scene_read(&j->scene, &f->light, &j->prov, err) ||
-        level_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err) ||
+        add_lamps_of_edit(j, err) || level_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err) ||
         level_blinds_check(&j->states, &j->scene, err) ||
         level_metre_find(&j->scene.metre, &j->scene.axes, &j->plan, &j->params, err))
         return err->status;
@@ -150,7 +160,35 @@ static enum status write_others(struct levels_job *j, struct err *err)
         product_path_in(path, j->out, PRODUCT_OPENING_SCHEDULE, &key, err))
         return err->status;
     if (quantities_write_openings(&j->plan, j->scene.axes.metric, path, err)) return err->status;
+    if (!j->scene.edited && (product_path_in(path, j->out, PRODUCT_LIGHT_FACTORS, &key, err) ||
+                             level_factors_write(&j->factors, &j->light.groups, path, &j->prov, err)))
+        return err->status;
     return write_scripts(j, err);
+}
+
+/* What was measured in states of switches; of an edit, what it says of the unedited room. */
+static enum status find_factors(struct levels_job *j, struct err *err)
+{
+    const struct factor_sources from = {.light = &j->light,
+                                        .points = &j->levels,
+                                        .sensors = &j->sensors,
+                                        .states = &j->states,
+                                        .params = &j->params,
+                                        .scale = j->scale.is};
+    if (j->files.factors)
+        level_factors_read(&j->factors, &j->light.groups, j->files.factors, &j->prov, err);
+    else if (!j->scene.edited)
+        level_factors_make(&j->factors, &from, err);
+    if (err->status) return err->status;
+    if (j->factors.count) {
+        j->light.groups.factors = j->factors.of_groups;
+        if (!(j->scale.is.scale > 0)) j->scale.is = j->factors.scale;
+    }
+    j->light.groups.scaled = j->scale.is.scale > 0;
+    if (j->scene.change.map.planned_count && !j->light.groups.scaled)
+        log_warn("lx of the photographs' light are not known, so that the lamps of the edit shine in the state "
+                 "edit-lamps alone, and on the page. Measure a point (lux.txt).");
+    return ST_OK;
 }
 
 static enum status resolve_places(struct levels_job *j, struct err *err)
@@ -174,6 +212,7 @@ enum status levels_run(struct levels_job *j, struct err *err)
     if (sensors_make(&j->sensors, level_scene_field(&j->scene), &j->plan, &j->places, &j->params, &j->scene.metre,
                      err) ||
         level_points_make(&j->levels, &j->light, j->sensors.points, j->sensors.count, &j->params, err) ||
+        find_factors(j, err) ||
         level_views_make(&j->views, &j->files.shown, &j->scene.axes, &j->light, &j->prov, err) || write_film(j, err) ||
         write_others(j, err))
         return err->status;

@@ -4,6 +4,7 @@
 
 #include "common/daylight/lux_scale.h"
 #include "common/daylight/weather.h"
+#include "stages/light_levels/level_factors.h"
 #include "stages/light_levels/level_sums.h"
 #include "stages/light_levels/level_views.h"
 #include "stages/light_levels/light_errors.h"
@@ -13,7 +14,7 @@
 struct levels_files {
     struct light_change_files light;
     const char *fit, *sky; /* how far lamps, sun and sky may be off; NULL: not at all */
-    const char *plan, *places, *states, *weather, *points, *before, *scale, *day;
+    const char *plan, *places, *states, *weather, *points, *before, *scale, *day, *factors;
     bool table; /* of `points`: all states */
     struct level_view_files shown;
 };
@@ -32,6 +33,7 @@ struct levels_job {
     struct light_errors errors;
     struct sensors sensors;
     struct level_points levels; /* of the sensors */
+    struct level_factors factors;
     struct level_views views;
     struct light_sheet sheet, before;
     struct lux_scale scale;

@@ -10,8 +10,9 @@
  *         PLACES, STATES, WEATHER             named places; states of lamps and sky; an EPW file
  *         FILE.ies beside STATES              photometry of planned lamps
  *         SCALE                               how many cd/m2 a radiance of 1 is
- *         BEFORE                              the sheet of the unedited room
+ *         BEFORE, FACTORS                     the sheet of the unedited room; what was measured there of lamps
  * writes  OUT/levels.txt, levels.exr          illuminance at each point from each group of light
+ *         OUT/factors.txt                     of the unedited room: how bright lamps and windows were measured
  *         OUT/quantities.csv, openings.csv    areas of faces; openings with their sizes
  *         OUT/STATE.svg                       illuminance of the work planes on the floor plan
  *         OUT/STATE.PHOTO.svg                 illuminance of what a photograph shows, over the photograph
@@ -78,6 +79,8 @@ int main(int argc, char **argv)
         CLI_STR("day", &job.files.day, CLI_OPTIONAL, "date, YYYY-MM-DD: a film of that day, and its hours on the page"),
         CLI_STR("scale", &job.files.scale, CLI_OPTIONAL,
                 "cd/m2 of a radiance of 1, scale.txt; without it, light of the photographs is in their own unit"),
+        CLI_STR("factors", &job.files.factors, CLI_OPTIONAL,
+                "with --edited: factors.txt of the unedited room, by measurements in states of switches"),
         CLI_STR("before", &job.files.before, CLI_OPTIONAL, "sheet.tsv of the unedited room, to compare with"),
         CLI_STR("points", &job.files.points, CLI_OPTIONAL,
                 "instead: print the photographed irradiance at points, X Y Z NX NY NZ a line, in the views' frame, and "

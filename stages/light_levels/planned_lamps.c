@@ -15,6 +15,7 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 #include "common/math/numbers.h"
+#include "common/texture/texture_map.h"
 
 static const double FARTHEST = 1000, SMALLEST = 1e-3; /* m */
 
@@ -126,6 +127,31 @@ enum status planned_lamps_read(struct planned_lamps *l, struct textfile *t, stru
         return err->status;
     lamp->at = vec3_make(at[0], at[1], at[2]);
     return read_options(lamp, t, err);
+}
+
+enum status planned_lamps_add(struct planned_lamps *l, const struct texture_planned *of, const char *folder,
+                              struct provenance *prov, struct err *err)
+{
+    const struct rgb colour = rgb_make(of->colour[0], of->colour[1], of->colour[2]);
+    char path[FILE_PATH];
+    if (planned_lamps_find(l, of->name) >= 0)
+        return err_set(err, ST_DATA,
+                       "the edit's lamp %s has the name of a lamp of states.txt; give one of them another.", of->name);
+    if (!folder)
+        return err_set(err, ST_USAGE, "the edit's lamp %s has a file in the scene's folder; give --scene.", of->name);
+    if (array_append(&l->list, (size_t)l->count, sizeof *l->list, "lamps", err)) return err->status;
+    struct planned_lamp *lamp = &l->list[l->count++];
+    *lamp = (struct planned_lamp){.name = strdup(of->name), .at = {of->at[0], of->at[1], of->at[2]}, .on = true};
+    if (!lamp->name) return err_nomem(err, "a name", strlen(of->name));
+    if (!(rgb_luminance(colour) > 0))
+        return err_set(err, ST_DATA, "the edit's lamp %s has a colour of 0 0 0.", of->name);
+    lamp->colour =
+        rgb_multiply(rgb_scale(colour, 1 / rgb_luminance(colour)), rgb_make(of->scale[0], of->scale[1], of->scale[2]));
+    set_frame(lamp, vec3_make(of->aim[0], of->aim[1], of->aim[2]), of->turn);
+    if (file_path(path, folder, of->file, "", err) || photometry_read(&lamp->web, path, NULL, err) ||
+        (prov && provenance_add_file(prov, of->file, path, err)))
+        return err_context(err, "the edit's lamp %s", of->name);
+    return ST_OK;
 }
 
 /* ------------------------------------------------------------------------------------------------------------ light */

@@ -17,7 +17,8 @@ struct planned_lamp {
     char *name; /* owned */
     struct photometry web;
     struct vec3 at, down, along; /* unit directions of the vertical and the horizontal angle 0 */
-    struct rgb colour;           /* of luminance 1 */
+    struct rgb colour;           /* of luminance 1, times factors of an edit */
+    bool on;                     /* an edit's: it shines where lamps do */
     int line;
 };
 
@@ -30,6 +31,10 @@ struct planned_lamps {
 
 /* Reads what follows `lamp` in a line. ST_DATA with file and line, of the IES file for what is wrong with that. */
 enum status planned_lamps_read(struct planned_lamps *l, struct textfile *t, struct provenance *prov, struct err *err);
+/* An edit's lamp, with the file in a folder. ST_DATA: a name that is taken, a damaged file. */
+struct texture_planned;
+enum status planned_lamps_add(struct planned_lamps *l, const struct texture_planned *of, const char *folder,
+                              struct provenance *prov, struct err *err);
 void planned_lamps_release(struct planned_lamps *l);
 int planned_lamps_find(const struct planned_lamps *l, const char *name); /* -1: not found */
 

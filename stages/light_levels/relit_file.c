@@ -127,7 +127,7 @@ enum status relit_file_write(const struct relit_light *r, const char *path, stru
     for (int i = 0; i < r->lamp_count; i++) {
         fputs(lamp_words[r->lamps[i].kind], f.fp);
         put_name(f.fp, r->lamps[i].name);
-        fputc('\n', f.fp);
+        fputs(r->lamps[i].on ? " on\n" : "\n", f.fp);
     }
     for (int i = 0; i < r->window_count; i++) {
         fputs("window", f.fp);
@@ -240,8 +240,11 @@ static enum status read_lamp(struct reading *in, enum relit_lamp_kind kind, stru
 {
     struct relit_light *r = in->r;
     if (array_append(&r->lamps, (size_t)r->lamp_count, sizeof *r->lamps, "lamps", err)) return err->status;
-    r->lamps[r->lamp_count] = (struct relit_lamp){kind, NULL};
-    return read_name(&r->lamps[r->lamp_count++].name, in, err);
+    struct relit_lamp *lamp = &r->lamps[r->lamp_count++];
+    *lamp = (struct relit_lamp){kind, NULL, false};
+    if (read_name(&lamp->name, in, err)) return err->status;
+    lamp->on = kind == RELIT_PLANNED && textfile_more(in->t);
+    return lamp->on ? textfile_expect(in->t, "on", err) : ST_OK;
 }
 
 static enum status read_window(struct reading *in, struct err *err)

@@ -534,7 +534,7 @@ static enum status make_photos(const struct making *m, struct err *err)
 static enum status add_lamp(struct relit_light *r, enum relit_lamp_kind kind, const char *name, struct err *err)
 {
     struct relit_lamp *lamp = &r->lamps[r->lamp_count];
-    *lamp = (struct relit_lamp){kind, strdup(name)};
+    *lamp = (struct relit_lamp){kind, strdup(name), false};
     if (!lamp->name) return err_nomem(err, "a name", strlen(name));
     r->lamp_count++;
     return ST_OK;
@@ -548,7 +548,9 @@ static enum status name_groups(struct relit_light *r, const struct light_groups 
     if (!r->lamps || !r->windows) return err_nomem(err, "lamps", (size_t)g->rest * sizeof *r->lamps);
     for (int i = 0; !err->status && i < g->rest; i++) add_lamp(r, RELIT_FITTED, g->field->lights.lamps[i].name, err);
     if (!err->status) add_lamp(r, RELIT_REST, "", err);
-    for (int i = 0; !err->status && i < planned; i++) add_lamp(r, RELIT_PLANNED, g->planned_lamps->list[i].name, err);
+    for (int i = 0; !err->status && i < planned; i++)
+        if (!add_lamp(r, RELIT_PLANNED, g->planned_lamps->list[i].name, err))
+            r->lamps[r->lamp_count - 1].on = g->planned_lamps->list[i].on;
     for (int v = 0; !err->status && v < g->windows_count; v++) {
         if (!(r->windows[v] = strdup(g->windows[v].name))) return err_nomem(err, "a name", strlen(g->windows[v].name));
         r->window_count++;
@@ -568,6 +570,18 @@ static double photographed_horizontal(const struct light_groups *g)
     return sum;
 }
 
+/* The photographs keep their light; switches multiply what was measured. */
+static void take_factors(struct relit_light *r, const struct light_groups *g)
+{
+    for (int i = 0; i < r->field_count; i++) {
+        const struct relit_field *f = &r->fields[i];
+        const bool is_lamp = f->kind == RELIT_LAMP && r->lamps[f->of].kind != RELIT_PLANNED;
+        if (!is_lamp && f->kind != RELIT_WINDOW) continue;
+        const float by = (float)g->factors[is_lamp ? f->of : g->sky + f->of];
+        for (size_t k = 0; k < rows_of(r); k++) f->values[k] *= by;
+    }
+}
+
 static enum status add_parts(struct making *m, struct err *err)
 {
     struct relit_light *r = m->r;
@@ -581,6 +595,7 @@ static enum status add_parts(struct making *m, struct err *err)
         add_groups(m, RELIT_WINDOW, v, groups, 2, err);
     }
     if (!err->status) add_texture(r, err);
+    if (!err->status && g->factors) take_factors(r, g);
     return err->status ? err->status : add_skies(m, err);
 }
 

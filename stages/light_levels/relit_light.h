@@ -27,6 +27,7 @@ enum relit_lamp_kind { RELIT_FITTED, RELIT_REST, RELIT_PLANNED };
 struct relit_lamp {
     enum relit_lamp_kind kind;
     char *name; /* owned; "": the rest */
+    bool on;    /* planned: it shines where lamps do, if there is a scale */
 };
 
 /* A computed sky. */

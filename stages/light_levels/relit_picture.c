@@ -49,7 +49,8 @@ static int find_window(const struct relit_light *r, const char *name)
 static enum status set_switches(struct relit_sum *s, const struct relit_light *r, const struct light_state *state,
                                 struct err *err)
 {
-    for (int i = 0; i < r->lamp_count; i++) s->lamps[i] = r->lamps[i].kind == RELIT_PLANNED ? 0 : state->lamps;
+    for (int i = 0; i < r->lamp_count; i++)
+        s->lamps[i] = state->lamps && (r->lamps[i].kind != RELIT_PLANNED || (r->lamps[i].on && r->scale > 0));
     for (int i = 0; i < r->window_count; i++) s->blinds[i] = 1;
     for (int k = 0; k < state->named_count; k++) {
         const int lamp = find_lamp(r, state->named[k].name);

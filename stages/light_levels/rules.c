@@ -100,6 +100,7 @@ static void edit_rule(struct graph *g, const struct scene_facts *f, const char *
     say_scripts(g, f);
     say_photos(g, f, edit);
     rule_takes(g, "--before", PATH(g, LIGHT_SHEET));
+    rule_option(g, "--factors", PATH(g, LIGHT_FACTORS)); /* which was written before the sheet */
     rule_option(g, "--out", FOLDER(g, LIGHT_SHEET, .lux = lux));
 }
 

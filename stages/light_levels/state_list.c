@@ -9,8 +9,9 @@
 #include "common/base/scan.h"
 #include "common/base/textfile.h"
 
-static const double BRIGHTEST = 1e6, MOST_FACTOR = 1000; /* lx */
-enum { YEAR = 2025 };                                    /* of times, which have none: no leap year */
+static const double BRIGHTEST = 1e6, LEAST_LUX = 0.01, MOST_FACTOR = 1000; /* lx */
+static const double USUAL_WITHIN = 0.05;                                   /* of a lux-meter */
+enum { YEAR = 2025 };                                                      /* of times, which have none: no leap year */
 
 static void release_state(struct light_state *s)
 {
@@ -24,7 +25,9 @@ static void release_state(struct light_state *s)
 void state_list_release(struct state_list *l)
 {
     for (int i = 0; i < l->count; i++) release_state(&l->items[i]);
+    for (int i = 0; i < l->measured_count; i++) free(l->measured[i].place);
     planned_lamps_release(&l->planned);
+    free(l->measured);
     free(l->items);
     free(l->path);
     *l = (struct state_list){0};
@@ -163,6 +166,27 @@ static enum status read_state(struct state_list *l, struct textfile *t, struct e
     return begin_state(l, word, err) ? err->status : read_options(l, t, err);
 }
 
+static enum status read_measured(struct state_list *l, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (array_append(&l->measured, (size_t)l->measured_count, sizeof *l->measured, "measurements", err))
+        return err->status;
+    struct state_measured *m = &l->measured[l->measured_count++];
+    *m = (struct state_measured){.within = USUAL_WITHIN, .line = t->line};
+    if (textfile_number(t, "an illuminance in lx", LEAST_LUX, BRIGHTEST, &m->lux, err) ||
+        textfile_expect(t, "at", err) || textfile_word(t, "a place of places.txt", &word, err))
+        return err->status;
+    if (!(m->place = strdup(word))) return err_nomem(err, "a name", strlen(word));
+    if (textfile_expect(t, "in", err) || textfile_word(t, "a state's name", &word, err)) return err->status;
+    while (m->state < l->count && strcmp(l->items[m->state].name, word) != 0) m->state++;
+    if (m->state == l->count) return textfile_error(t, err, word, "a state of every scene or of a line above");
+    if (!textfile_more(t)) return ST_OK;
+    if (textfile_expect(t, "within", err) || textfile_number(t, "per cent", 0.1, 100, &m->within, err))
+        return err->status;
+    m->within /= 100;
+    return textfile_end(t, err);
+}
+
 static enum status read_line(struct state_list *l, struct textfile *t, struct provenance *prov, struct err *err)
 {
     char *word;
@@ -172,7 +196,9 @@ static enum status read_line(struct state_list *l, struct textfile *t, struct pr
         return err->status;
     }
     if (!strcmp(word, "lamp")) return planned_lamps_read(&l->planned, t, prov, err);
-    return strcmp(word, "state") != 0 ? textfile_error(t, err, word, "site, lamp or state") : read_state(l, t, err);
+    if (!strcmp(word, "measured")) return read_measured(l, t, err);
+    if (strcmp(word, "state") != 0) return textfile_error(t, err, word, "site, lamp, state or measured");
+    return read_state(l, t, err);
 }
 
 /* ------------------------------------------------------------------------------------------------------------- list */
@@ -241,6 +267,22 @@ enum status state_list_read_words(struct state_list *l, const char *words, struc
     textfile_release(&t);
     if (err->status) state_list_release(l);
     return err->status;
+}
+
+enum status state_list_add_edit_lamps(struct state_list *l, struct err *err)
+{
+    static const char name[] = "edit-lamps";
+    if (has_name(l, name) || begin_state(l, name, err)) return err->status;
+    struct light_state *s = &l->items[l->count - 1];
+    s->lamps = false;
+    for (int i = 0; i < l->planned.count; i++) {
+        if (!l->planned.list[i].on) continue;
+        if (array_append(&s->named, (size_t)s->named_count, sizeof *s->named, "lamps", err)) return err->status;
+        s->named[s->named_count] = (struct state_factor){strdup(l->planned.list[i].name), 1};
+        if (!s->named[s->named_count].name) return err_nomem(err, "a name", strlen(l->planned.list[i].name));
+        s->named_count++;
+    }
+    return ST_OK;
 }
 
 /* The record of the hour that a time is in; NULL: none. */

@@ -3,6 +3,7 @@
  *   remodel-states 1
  *   site LATITUDE LONGITUDE ZONE [north DEGREES]     before states that need the sun
  *   lamp NAME ies FILE.ies at X Y Z ...              a planned lamp (planned_lamps.h), before states that name it
+ *   measured LUX at PLACE in STATE [within PERCENT]  a lux-meter at a place of places.txt, in a state above
  *   state NAME [lamps on|off] [lamp NAME FACTOR]... [sky SKY] [blind WINDOW PART]...
  *
  * ZONE: hours that clocks are ahead of UTC. DEGREES: the azimuth of north in the model's frame, from x towards y (90
@@ -45,6 +46,14 @@ struct light_state {
     int line; /* 0: not from a file */
 };
 
+/* What somebody measured in a state of switches. */
+struct state_measured {
+    char *place;        /* owned */
+    int state;          /* its number */
+    double lux, within; /* within: relative, of 95 % */
+    int line;
+};
+
 /* {0} is the empty state; everything is owned. */
 struct state_list {
     char *path; /* NULL: those that every scene has */
@@ -54,6 +63,8 @@ struct state_list {
     struct sun_place site;
     double north; /* degrees in the model's frame */
     struct planned_lamps planned;
+    struct state_measured *measured;
+    int measured_count;
 };
 
 /* The states that every scene has, and those of a file; path NULL: no file. The first four are photographed, lamps,
@@ -64,6 +75,8 @@ enum status state_list_read(struct state_list *l, const char *path, struct prove
 /* The states that every scene has, and a last one by the words that follow `state NAME`, which may be of an hour
  * without a site. ST_DATA: other words. */
 enum status state_list_read_words(struct state_list *l, const char *words, struct err *err);
+/* Adds the state `edit-lamps`, in which the lamps of an edit shine alone. */
+enum status state_list_add_edit_lamps(struct state_list *l, struct err *err);
 const struct light_state *state_list_find(const struct state_list *l, const char *name); /* NULL: not found */
 void state_list_release(struct state_list *l);
 

@@ -7,7 +7,7 @@ printf 'window pane on east from -5 5 to 5 12\n' >>scenes/t/model.txt
 sed -i 's/^set slab 1$/set slab 1\nset glass 0.1/' scenes/t/model.txt
 m() { make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t "$@" >log 2>&1 || { cat log; fail "make $*"; }; }
 printf '[bake_outdoors]\nheight = 64\nedge = 1\nmax_clutter = 1\n[light_levels]\npatches = 300\nrays = 64\npoint_rays = 64\nspacing = 0.5\nmargin = 0.25\n' >>scenes/t/scene.cfg
-printf 'remodel-script 1\n# A dark floor.\npaint floor/hall 0.05 0.05 0.05\n' >scenes/t/edits/dark.txt
+printf 'remodel-script 1\n# A dark floor, and a lamp.\npaint floor/hall 0.05 0.05 0.05\nlamp hung ies new.ies at 0 8 16 colour 1 0.9 0.8\n' >scenes/t/edits/dark.txt
 printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
 ies='IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n1000 1000\n'
 printf '%b' "$ies" >scenes/t/new.ies
@@ -47,6 +47,9 @@ make_lux_has_a_sheet_of_the_room_and_of_the_edit()
     # a dark floor takes light away: the last column is the mean minus that before
     awk -F '\t' '$1 == "photographed" && $2 == "work-plane" { n++; if (!($13 < 0 && $5 - $12 - $13 < 1e-3 * $12 + 1e-6)) bad = 1 } END { exit !n || bad }' "$e" ||
         { cat "$e"; fail "a dark floor takes no light away"; }
+    # the edit's lamp shines in a state of its own, which the unedited room lacks
+    [ "$(cell "$e" edit-lamps place desk 11)" = lx ] && awk -v v="$(cell "$e" edit-lamps place desk 5)" 'BEGIN { exit !(v > 10) }' || { grep desk "$e"; fail "the edit's lamp does not shine"; }
+    grep -q '^group [0-9]* planned hung$' $O/lux/dark/levels.txt && ! grep -q hung $O/lux/levels.txt || fail "the edit's lamp is in the wrong room"
     m lux EDIT=dark LUX_PHOTOS='photo_1 photo_2'
     ! grep -q light_levels log || { cat log; fail "a second make made it again"; }
     # an IES file is read again when it changes
@@ -75,6 +78,7 @@ a_model_without_rooms_is_warned_of()
     grep -v '^room ' "$O/model/plan.txt" >bare.txt
     local inputs=("${inputs[@]/$O\/model\/plan.txt/bare.txt}")
     levels 0 'the model has no room, ' --out two/bare
+    ! grep -q '^daylight-factor' two/bare/sheet.tsv && [ ! -e two/bare/daylight-factor.svg ] || fail "daylight factors of nothing"
 }
 
 # E = I / r^2 below a planned lamp in a black room would be 444 lx; reflected light adds to it; a factor multiplies it
@@ -146,6 +150,30 @@ blinds_take_their_part_of_daylight()
     levels 1 'bad.txt:2: found a blind of the window none-such' --states bad.txt --out made
     printf 'remodel-states 1\nstate odd blind pane 1.5\n' >bad.txt
     levels 1 'bad.txt:2' --states bad.txt --out made
+}
+
+# a lux-meter showed half of what one lamp and twice of what the other gives by the scale, at places that each lights
+measurements_in_states_say_how_bright_lamps_are()
+{
+    printf 'remodel-lights 1\ndisk one -5 5 8 0 0 -1 1 50 50 50 90 0\ndisk two 5 12 8 0 0 -1 1 50 50 50 90 0\n' >lamps.txt
+    printf 'remodel-places 1\nplace west at -5 5 height 4\nplace east at 5 12 height 4\n' >two.txt
+    printf 'remodel-lux-scale 1\nscale 10\ninterval 9 11\nfrom measurements\nexposure 0 0 0 0\n' >scale.txt
+    printf 'remodel-states 1\nstate one lamps off lamp one 1\nstate two lamps off lamp two 1\n' >before.txt
+    levels 0 patches --lights lamps.txt --places two.txt --scale scale.txt --states before.txt --set error=0.02 --out two/fit0
+    local s=two/fit0/sheet.tsv; grep -qx 'scale 0 0 0' two/fit0/factors.txt || { cat two/fit0/factors.txt; fail "factors of nothing"; }
+    { cat before.txt; awk -v a="$(cell $s one place west 5)" -v b="$(cell $s two place east 5)" 'BEGIN { printf "measured %.9g at west in one within 1\nmeasured %.9g at east in two within 1\n", a / 2, 2 * b }'; } >after.txt
+    levels 0 'lamp one: 0.5' --lights lamps.txt --places two.txt --scale scale.txt --states after.txt --set error=0.02 --out two/fit1
+    awk -v a="$(cell $s one place west 5)" -v b="$(cell $s two place east 5)" -v c="$(cell two/fit1/sheet.tsv one place west 5)" -v d="$(cell two/fit1/sheet.tsv two place east 5)" \
+        'BEGIN { exit !((c / a - 0.5) ^ 2 < 1e-4 && (d / b - 2) ^ 2 < 1e-3) }' || { cat two/fit1/factors.txt; fail "measured lamps are not as bright as measured"; }
+    # without a scale the measurements are the scale
+    levels 0 'times as photographed' --lights lamps.txt --places two.txt --states after.txt --out two/fit2
+    [ "$(cell two/fit2/sheet.tsv one place west 11)" = lx ] || fail "measurements give no scale"
+    printf 'remodel-states 1\nmeasured 100 at none-such in lamps\n' >bad.txt
+    levels 1 'bad.txt:2: found a measurement at none-such' --states bad.txt --out made
+    printf 'remodel-states 1\nmeasured 100 at desk in evening\n' >bad.txt
+    levels 1 'bad.txt:2: found "evening"' --states bad.txt --out made
+    printf 'remodel-states 1\nmeasured 100 at west in overcast\n' >bad.txt
+    levels 1 'no lamp and no window of the photographs brings light to west' --places two.txt --states bad.txt --out made
 }
 
 the_page_adds_groups_of_light_up()
@@ -234,4 +262,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key a_command_line_draws_photographs_in_any_state blinds_take_their_part_of_daylight the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre a_model_without_rooms_is_warned_of planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key a_command_line_draws_photographs_in_any_state blinds_take_their_part_of_daylight measurements_in_states_say_how_bright_lamps_are the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre a_model_without_rooms_is_warned_of planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done

@@ -138,8 +138,11 @@ struct plan_wish {
 };
 
 struct plan_lamp {
-    char *name;      /* in lights.txt; owned */
+    char *name;      /* in lights.txt, or of a planned lamp; owned */
     double scale[3]; /* of its radiance */
+    char *file;      /* of a planned one, its photometry in the scene's folder; NULL: one of lights.txt; owned */
+    int line;        /* of its statement */
+    struct script_lamp placed;
 };
 
 struct plan_object { /* a synthetic object */

@@ -212,11 +212,43 @@ static enum status check_reach(struct plan_checker *c)
     return ST_OK;
 }
 
+/* Whether a point is in a room, between its walls, floor and ceiling, or on one of these. */
+static bool is_in_room(const struct plan_room *r, const double at[3])
+{
+    const double slack = 1e-6 * (1 + fabs(r->ceiling - r->floor));
+    bool inside = false;
+    if (r->removed || !r->edge_count || at[2] < r->floor - slack || at[2] > plan_top_at(&r->lower, at) + slack)
+        return false;
+    for (int i = 0, k = r->edge_count - 1; i < r->edge_count; k = i++) {
+        const double *a = r->edges[i].corner, *b = r->edges[k].corner;
+        if ((a[1] > at[1]) != (b[1] > at[1]) && at[0] < a[0] + (at[1] - a[1]) / (b[1] - a[1]) * (b[0] - a[0]))
+            inside = !inside;
+    }
+    return inside;
+}
+
+/* Planned lamps hang in rooms; a statement that walls one in is blamed. */
+static enum status check_lamps(struct plan_checker *c)
+{
+    for (int i = 0; i < c->plan->lamp_count; i++) {
+        const struct plan_lamp *l = &c->plan->lamps[i];
+        bool inside = false;
+        if (!l->file || !(l->scale[0] + l->scale[1] + l->scale[2] > 0)) continue;
+        for (int k = 0; k < c->plan->room_count && !inside; k++) inside = is_in_room(&c->plan->rooms[k], l->placed.at);
+        if (!inside)
+            return plan_error(c, l->line,
+                              "the lamp %s at %.9g %.9g %.9g is in no room: inside a wall, a floor or a "
+                              "ceiling, or outdoors; give another place, in the model's frame.",
+                              l->name, l->placed.at[0], l->placed.at[1], l->placed.at[2]);
+    }
+    return ST_OK;
+}
+
 enum status plan_check(struct plan *plan, const char *path, int line, struct err *err)
 {
     struct plan_checker c = {plan, path, line, err};
     if (plan_check_rooms(&c) || check_walls(&c) || check_openings(&c) || check_slots(&c) || check_boxes(&c) ||
-        check_reach(&c))
+        check_reach(&c) || check_lamps(&c))
         return err->status;
     return ST_OK;
 }

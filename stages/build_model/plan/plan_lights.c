@@ -12,7 +12,10 @@
 
 void plan_lights_release(struct plan *plan)
 {
-    for (int i = 0; i < plan->lamp_count; i++) free(plan->lamps[i].name);
+    for (int i = 0; i < plan->lamp_count; i++) {
+        free(plan->lamps[i].name);
+        free(plan->lamps[i].file);
+    }
     for (int i = 0; i < plan->object_count; i++) {
         free(plan->objects[i].name);
         free(plan->objects[i].path);
@@ -20,6 +23,55 @@ void plan_lights_release(struct plan *plan)
     }
     free(plan->lamps);
     free(plan->objects);
+}
+
+static enum status read_three(struct script_reader *r, const char *what, double to[3])
+{
+    for (int k = 0; k < 3; k++)
+        if (script_read_number(r, what, &to[k])) return r->err->status;
+    return ST_OK;
+}
+
+static bool is_web_file(const char *word)
+{
+    const size_t length = strlen(word);
+    return length > 4 && length <= 255 && !strcmp(word + length - 4, ".ies") && !strpbrk(word, "/\r") && *word != '.';
+}
+
+/* FILE.ies at X Y Z, and options. */
+static enum status read_planned(struct script_reader *r, struct statement *s)
+{
+    struct script_lamp *l = &s->lamp;
+    bool had[3] = {false, false, false};
+    char *word;
+    *l = (struct script_lamp){{0, 0, 0}, {0, 0, -1}, 0, {1, 1, 1}};
+    if (!scan_is_name(s->name))
+        return textfile_error(&r->t, r->err, s->name,
+                              "a name of letters, digits, _ and -, which does not begin with -");
+    if (textfile_word(&r->t, "an IES file, FILE.ies", &word, r->err)) return r->err->status;
+    if (!is_web_file(word))
+        return textfile_error(&r->t, r->err, word, "an IES file in the scene's folder, FILE.ies, without a folder");
+    s->mesh = script_keep_word(r, word);
+    if (script_expect(r, "at") || read_three(r, "a coordinate", l->at)) return r->err->status;
+    while (textfile_more(&r->t)) {
+        static const char *const options[] = {"aim", "turn", "colour"};
+        int k = 0;
+        if (textfile_word(&r->t, "an option", &word, r->err)) return r->err->status;
+        while (k < 3 && strcmp(word, options[k]) != 0) k++;
+        if (k == 3 || had[k])
+            return textfile_error(&r->t, r->err, word, "aim DX DY DZ, turn DEGREES or colour R G B, each once");
+        had[k] = true;
+        if (k == 1 ? script_read_number(r, "an angle in degrees", &l->turn)
+                   : read_three(r, k ? "a share of the light's colour" : "a direction", k ? l->colour : l->aim))
+            return r->err->status;
+    }
+    if (!(fabs(l->aim[0]) + fabs(l->aim[1]) + fabs(l->aim[2]) > 0))
+        return textfile_error(&r->t, r->err, "aim 0 0 0", "a direction, such as 0 0 -1 for straight down");
+    for (int c = 0; c < 3; c++)
+        if (!(l->colour[c] >= 0)) return textfile_wrong_number(&r->t, l->colour[c], "a colour of 0 or more", r->err);
+    if (!(l->colour[0] + l->colour[1] + l->colour[2] > 0))
+        return textfile_error(&r->t, r->err, "the colour 0 0 0", "a number above 0 in it");
+    return ST_OK;
 }
 
 /* Lamps have the names of lights.txt: any word. */
@@ -33,8 +85,9 @@ enum status plan_read_lamp(struct script_reader *r, struct statement *s)
     s->name = script_keep_word(r, word);
     s->value_count = 3;
     if (!textfile_more(&r->t)) return script_usage_error(r, NULL);
-    if (textfile_word(&r->t, "off or scale", &word, r->err)) return r->err->status;
+    if (textfile_word(&r->t, "off, scale or ies", &word, r->err)) return r->err->status;
     if (!strcmp(word, "off")) return ST_OK;
+    if (!strcmp(word, "ies")) return read_planned(r, s);
     if (strcmp(word, "scale")) return script_usage_error(r, word);
     for (int c = 0; c < 3; c++) {
         if (script_read_number(r, "a factor of 0 or more", &s->values[c])) return r->err->status;
@@ -43,7 +96,24 @@ enum status plan_read_lamp(struct script_reader *r, struct statement *s)
     return ST_OK;
 }
 
-/* off, scale */
+/* A planned lamp is on where it is put; one that is there moves. */
+static enum status place_lamp(struct plan_context *c, struct plan_lamp *l)
+{
+    const double *at = c->s->lamp.at;
+    for (int k = 0; k < 3; k++)
+        if (!(fabs(at[k]) <= MAX_SIZE))
+            return plan_statement_error(c, "the lamp %s is at %.9g %.9g %.9g, wanted it within %g of the origin.",
+                                        c->s->name, at[0], at[1], at[2], MAX_SIZE);
+    free(l->file);
+    l->file = strdup(c->s->mesh);
+    if (!l->file) return err_nomem(c->err, "a lamp", strlen(c->s->mesh) + 1);
+    l->line = c->s->line;
+    l->placed = c->s->lamp;
+    for (int k = 0; k < 3; k++) l->scale[k] = 1;
+    return ST_OK;
+}
+
+/* off, scale, ies */
 enum status plan_apply_lamp(struct plan_context *c)
 {
     struct plan *p = c->plan;
@@ -51,10 +121,19 @@ enum status plan_apply_lamp(struct plan_context *c)
     while (i < p->lamp_count && strcmp(p->lamps[i].name, c->s->name)) i++;
     if (i == p->lamp_count) {
         if (array_append(&p->lamps, (size_t)i, sizeof *p->lamps, "lamps", c->err)) return c->err->status;
-        p->lamps[i].name = strdup(c->s->name);
+        p->lamps[i] = (struct plan_lamp){.name = strdup(c->s->name)};
         if (!p->lamps[i].name) return err_nomem(c->err, "a lamp", strlen(c->s->name) + 1);
         p->lamp_count++;
     }
+    if (c->s->mesh) {
+        if (!p->lamps[i].file && p->lamps[i].line)
+            return plan_statement_error(c,
+                                        "the lamp %s is one of lights.txt, which a statement above changes; give the "
+                                        "planned lamp another name.",
+                                        c->s->name);
+        return place_lamp(c, &p->lamps[i]);
+    }
+    if (!p->lamps[i].file) p->lamps[i].line = c->s->line;
     memcpy(p->lamps[i].scale, c->s->values, sizeof p->lamps[i].scale);
     return ST_OK;
 }

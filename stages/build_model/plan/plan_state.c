@@ -51,9 +51,14 @@ static void put_lights(FILE *to, const struct plan *plan)
 {
     for (int i = 0; i < plan->lamp_count; i++) {
         const struct plan_lamp *l = &plan->lamps[i];
-        if (l->scale[0] == 1 && l->scale[1] == 1 && l->scale[2] == 1) continue;
-        fprintf(to, "lamp %d", i);
+        if (!l->file && l->scale[0] == 1 && l->scale[1] == 1 && l->scale[2] == 1) continue;
+        fprintf(to, "lamp %d %s", i, l->file ? l->file : "");
         put(to, l->scale, 3);
+        if (!l->file) continue;
+        put(to, l->placed.at, 3);
+        put(to, l->placed.aim, 3);
+        put(to, l->placed.colour, 3);
+        put(to, &l->placed.turn, 1);
     }
     for (int i = 0; i < plan->object_count; i++) {
         const struct plan_object *o = &plan->objects[i];

@@ -69,6 +69,12 @@ struct script_object {
     struct brdf brdf;
 };
 
+/* A lamp with its maker's photometry: the middle of its opening, where the file's vertical angle 0 points, a turn about
+ * that direction in degrees, and the colour of its light. */
+struct script_lamp {
+    double at[3], aim[3], turn, colour[3];
+};
+
 struct verb; /* verbs.h */
 
 struct statement {
@@ -77,7 +83,7 @@ struct statement {
     const char *name;  /* what it makes or changes; set: the quantity; join: NULL */
     const char *other; /* openings: the wall or room; extend: the wall to reach, or NULL; split: the new wall; copy: the
                            face that gets the texture; texture: "stretch" or "crop"; clear, keep: the opening */
-    const char *mesh;  /* object: its file in the scene's folder; else NULL */
+    const char *mesh;  /* object, planned lamp: its file in the scene's folder; else NULL */
     bool by_points;    /* wall, adjust: the place is found by points, since it is a rectangle in a view */
     const char **names; /* join, room, walls: walls in order; slope, gable: the two walls */
     int name_count;
@@ -95,6 +101,7 @@ struct statement {
     bool of_object;              /* remove: the name is that of an object */
     struct gloss gloss;          /* material */
     struct script_object object; /* object */
+    struct script_lamp lamp;     /* a planned lamp */
 };
 
 #endif

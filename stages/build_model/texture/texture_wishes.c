@@ -258,10 +258,32 @@ void texture_wishes_gloss(struct texture_face *to, const struct texture_models *
 /* ------------------------------------------------------------------------------------------------- lamps, zones,
  * things */
 
+/* One that was turned off again is left out. */
+static enum status add_planned(struct texture_map *map, const struct plan_lamp *l, struct err *err)
+{
+    const double most = fmax(l->scale[0], fmax(l->scale[1], l->scale[2]));
+    if (!(most > 0)) return ST_OK;
+    if (array_append(&map->planned, (size_t)map->planned_count, sizeof *map->planned, "lamps", err)) return err->status;
+    struct texture_planned *to = &map->planned[map->planned_count++];
+    *to = (struct texture_planned){.name = strdup(l->name), .file = strdup(l->file), .turn = l->placed.turn + 0.0};
+    if (!to->name || !to->file) return err_nomem(err, "a lamp", strlen(l->name) + strlen(l->file));
+    for (int k = 0; k < 3; k++) {
+        to->at[k] = l->placed.at[k] + 0.0;
+        to->aim[k] = l->placed.aim[k] + 0.0;
+        to->colour[k] = l->placed.colour[k];
+        to->scale[k] = l->scale[k];
+    }
+    return ST_OK;
+}
+
 enum status texture_lamps_add(struct texture_map *map, const struct plan *plan, struct err *err)
 {
     for (int i = 0; i < plan->lamp_count; i++) {
         const struct plan_lamp *l = &plan->lamps[i];
+        if (l->file) {
+            if (add_planned(map, l, err)) return err->status;
+            continue;
+        }
         if (l->scale[0] == 1 && l->scale[1] == 1 && l->scale[2] == 1) continue;
         if (array_append(&map->lamps, (size_t)map->lamp_count, sizeof *map->lamps, "lamps", err)) return err->status;
         struct texture_lamp *to = &map->lamps[map->lamp_count++];

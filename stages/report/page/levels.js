@@ -28,7 +28,8 @@ const decode = ({high, most, data}) => (most === undefined ? lightOf(data, high)
 class Variant {
     constructor(data, name, relit) {
         Object.assign(this, data, {name, relit, count: data.points.length / 2});
-        this.lamps = data.lamps.map((l) => ({name: l.name, planned: !!l.planned, light: decode(l.light)}));
+        this.lamps = data.lamps.map((l) => ({name: l.name, planned: !!l.planned, on: !!l.on && data.scale > 0,
+            light: decode(l.light)}));
         this.windows = data.windows.map((w) => ({name: w.name, photographed: decode(w.photographed),
             level: w.level && decode(w.level), parts: (w.parts || []).map(decode)}));
         this.suns = data.suns.map((s) => runsOf(s, this.count));
@@ -330,8 +331,12 @@ class Page {
             byId(id).addEventListener('input', () => { act(byId(id)); this.update(); });
         };
         days.forEach((d, i) => byId('day').append(make('option', {value: i}, dateOf(d.date))));
-        byId('no-site').hidden = days.length > 0;
-        byId('sky').querySelector('[value=hour]').disabled = !days.length;
+        const hasRooms = this.variants.some((v) => v.rooms.length);
+        byId('no-rooms').hidden = hasRooms;
+        byId('no-site').hidden = days.length > 0 || !hasRooms;
+        byId('sky').querySelector('[value=hour]').disabled = !days.length || !hasRooms;
+        byId('sky').querySelector('[value=overcast]').disabled = !hasRooms;
+        for (const id of ['plan', 'bar', 'ticks', 'unit', 'said', 'values']) byId(id).hidden = !hasRooms;
         change('sky', (e) => { c.sky = e.value; });
         change('cover', (e) => { c.cover = Number(e.value); });
         change('hour', (e) => { c.hour = Number(e.value); });
@@ -381,21 +386,22 @@ class Page {
         const box = byId('lamps'), c = this.choice;
         c.planned = names.filter((n) => lamps.some((l) => l.name === n && l.planned));
         this.dimmers = names.map((name, i) => {
-            const planned = c.planned.includes(name), value = planned ? 0 : 100;
+            const planned = c.planned.includes(name);
+            const on = !planned || lamps.some((l) => l.name === name && l.on), value = on ? 100 : 0;
             const output = make('output', {for: `lamp${i}`}, `${value} %`);
             const input = make('input', {type: 'range', min: 0, max: 200, step: 5, value, id: `lamp${i}`});
             input.addEventListener('input', () => { this.dim(i, Number(input.value)); this.update(); });
             box.append(make('label', {for: `lamp${i}`}, name ? `${words(name)}${planned ? ', planned' : ''}` :
                 'light that no lamp or window explains', output), input);
-            return {name, planned, input, output};
+            return {name, planned, on, input, output};
         });
         const all = (value) => () => {
-            this.dimmers.forEach((d, i) => { if (!value || !d.planned) this.dim(i, value); });
+            this.dimmers.forEach((d, i) => { if (!value || d.on) this.dim(i, value); });
             this.update();
         };
         byId('on').addEventListener('click', all(100));
         byId('off').addEventListener('click', all(0));
-        names.forEach((name) => c.factors.set(name, c.planned.includes(name) ? 0 : 1));
+        this.dimmers.forEach((d) => c.factors.set(d.name, Number(d.input.value) / 100));
     }
 
     // A blind for each window of any variant; the last one of each has no pane.

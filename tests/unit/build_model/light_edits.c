@@ -259,6 +259,29 @@ static void objects_of_all_edits_are_objects_alone(void **state)
 
 /* --------------------------------------------------------------------------------------------------------- refusals */
 
+/* A lamp that an edit hangs is in texture.txt, and comes back from it; one that is off again is not. */
+static void planned_lamps_reach_the_map(void **state)
+{
+    struct made m;
+    struct texture_map map;
+    struct err err = ERR_INIT;
+    (void)state;
+    make(&m, ROOM,
+         "lamp a ies a.ies at 1 1 2 aim 0 1 -1 turn 30 colour 1 0.8 0.6\nlamp b ies a.ies at 2 1 2\nlamp b off\n"
+         "lamp c ies a.ies at 2 1 2\nlamp c scale 0.5 0.5 0.5\nlamp d off\n");
+    assert_ok(texture_map_write(&m.map, scratch_path("map.txt"), NULL, &err), err);
+    assert_ok(texture_map_read(&map, scratch_path("map.txt"), NULL, &err), err);
+    assert_int_equal(map.lamp_count, 1);
+    assert_int_equal(map.planned_count, 2);
+    assert_string_equal(map.planned[0].name, "a");
+    assert_string_equal(map.planned[0].file, "a.ies");
+    assert_true(map.planned[0].at[2] == 2 && map.planned[0].aim[1] == 1 && map.planned[0].turn == 30);
+    assert_true(map.planned[0].colour[1] == 0.8 && map.planned[0].scale[0] == 1);
+    assert_true(map.planned[1].aim[2] == -1 && map.planned[1].scale[2] == 0.5);
+    texture_map_release(&map);
+    release(&m);
+}
+
 static void statements_without_meaning_are_refused(void **state)
 {
     static const char *const cases[][2] = {
@@ -274,6 +297,17 @@ static void statements_without_meaning_are_refused(void **state)
          "Y) have places. Leave the place out: the whole face gets the colour."},
         {"paint floor/hall in v00 1 1 2 2 0 0 1\n", "no views are known"},
         {"lamp l\n", "lamp NAME off | lamp NAME scale R G B"},
+        {"lamp l ies l.obj at 1 1 2\n", "an IES file in the scene's folder, FILE.ies"},
+        {"lamp l ies a/l.ies at 1 1 2\n", "an IES file in the scene's folder, FILE.ies"},
+        {"lamp l ies l.ies 1 1 2\n", "found \"1\""},
+        {"lamp l ies l.ies at 1 1\n", "a coordinate"},
+        {"lamp l ies l.ies at 1 1 2 aim 0 0 0\n", "a direction, such as 0 0 -1"},
+        {"lamp l ies l.ies at 1 1 2 colour 0 0 0\n", "a number above 0 in it"},
+        {"lamp l ies l.ies at 1 1 2 turn 1 turn 2\n", "each once"},
+        {"lamp l ies l.ies at 1 -0.05 2\n", "the lamp l at 1 -0.05 2 is in no room"},
+        {"lamp l ies l.ies at 1 1 9\n", "the lamp l at 1 1 9 is in no room"},
+        {"lamp l ies l.ies at 1 1 2\nlamp l ies l.ies at 1 1 2\n", "edit.txt:3: the statement changes nothing"},
+        {"lamp l scale 0.5 0.5 0.5\nlamp l ies l.ies at 1 1 2\n", "give the planned lamp another name"},
         {"lamp l on\n", "found \"on\""},
         {"lamp l off now\n", "the end of the line"},
         {"lamp l scale 1 1\n", "a factor of 0 or more"},
@@ -362,6 +396,7 @@ int main(void)
         cmocka_unit_test(objects_of_missing_or_damaged_meshes_are_refused),
         cmocka_unit_test(an_edit_changes_what_those_below_it_say),
         cmocka_unit_test(objects_of_all_edits_are_objects_alone),
+        cmocka_unit_test(planned_lamps_reach_the_map),
         cmocka_unit_test(statements_without_meaning_are_refused),
         cmocka_unit_test(faces_that_are_not_there_are_named),
         cmocka_unit_test(the_unedited_model_has_no_statements_about_light),
