@@ -9,6 +9,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "common/base/parallel.h"
 
@@ -70,6 +71,24 @@ static void find_voxels(void *ctx, size_t begin, size_t end, int thread)
     }
 }
 
+/* Takes off the voxels at the rim, whose sides are not all solid: depth at outlines is off by as much. What is outside
+ * of the box counts as solid. */
+static enum status take_rim(struct thing_hull *hull, struct err *err)
+{
+    const int *size = hull->grid.size;
+    const size_t voxels = voxel_count(&hull->grid), step[3] = {1, (size_t)size[0], (size_t)size[0] * (size_t)size[1]};
+    uint8_t *all = malloc(voxels);
+    if (!all) return err_nomem(err, "the hull of a thing", voxels);
+    memcpy(all, hull->solid, voxels);
+    for (size_t i = 0; i < voxels; i++)
+        for (int k = 0; k < 3; k++) {
+            const int at = (int)(i / step[k] % (size_t)size[k]);
+            if ((at > 0 && !all[i - step[k]]) || (at + 1 < size[k] && !all[i + step[k]])) hull->solid[i] = 0;
+        }
+    free(all);
+    return ST_OK;
+}
+
 enum status thing_hull_find(struct thing_hull *hull, const struct clutter_scene *scene,
                             const struct clutter_choice *choice, const struct thing_shape *thing, struct err *err)
 {
@@ -84,7 +103,7 @@ enum status thing_hull_find(struct thing_hull *hull, const struct clutter_scene 
     if (!(hull->solid = malloc(voxels))) return err_nomem(err, "the hull of a thing", voxels);
     struct hull_job job = {hull, scene, choice, thing->volume, thing->id};
     parallel_for(voxels, 256, find_voxels, &job);
-    return ST_OK;
+    return take_rim(hull, err);
 }
 
 void thing_hull_release(struct thing_hull *hull)
