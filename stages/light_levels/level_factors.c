@@ -1,9 +1,9 @@
 /* level_factors.c - see level_factors.h.
  *
  * A measurement in a state is a sum over groups: their light at the place, as photographed, times the scale to lx,
- * times a factor that the fit finds (group_fit.h). Its error is that of an illuminance of the model, [light_levels]
- * error, and the meter's. Planned lamps and computed skies are in lx, and are taken as they are. Without a scale, the
- * median of what the measurements say with all factors 1 is the scale. */
+ * times a factor that the fit finds (group_fit.h). Its error is twice [light_levels] error, since a place is less
+ * certain than an area, and the meter's. Planned lamps and computed skies are in lx, and are taken as they are. Without
+ * a scale, the median of what the measurements say with all factors 1 is the scale. */
 #include "stages/light_levels/level_factors.h"
 
 #include <math.h>
@@ -18,6 +18,7 @@
 #include "common/product/product.h"
 
 static const double NORMAL_95 = 1.959964, SPREAD = 0.5, SHARED = 0.05, OFF = 3; /* SHARED: error of all meters alike */
+static const double PLACE = 2; /* a place is that much less certain than the mean of an area */
 
 void level_factors_release(struct level_factors *f)
 {
@@ -99,7 +100,7 @@ static enum status read_one(struct group_measurement *m, const struct factor_sou
                        "%s:%d: in the state %s no lamp and no window of the photographs brings light to %s; measure in "
                        "a state with some.",
                        from->states->path, is->line, from->states->items[is->state].name, is->place);
-    const double meter = is->within / NORMAL_95, model = from->params->error;
+    const double meter = is->within / NORMAL_95, model = PLACE * from->params->error;
     m->lux = is->lux;
     m->error = sqrt(meter * meter + model * model);
     return err->status;
