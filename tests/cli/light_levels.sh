@@ -157,7 +157,7 @@ measurements_in_states_say_how_bright_lamps_are()
 {
     printf 'remodel-lights 1\ndisk one -5 5 8 0 0 -1 1 50 50 50 90 0\ndisk two 5 12 8 0 0 -1 1 50 50 50 90 0\n' >lamps.txt
     printf 'remodel-places 1\nplace west at -5 5 height 4\nplace east at 5 12 height 4\n' >two.txt
-    printf 'remodel-lux-scale 1\nscale 10\ninterval 9 11\nfrom measurements\nexposure 0 0 0 0\n' >scale.txt
+    printf 'remodel-lux-scale 1\nscale 10\ninterval 9 11\nfrom exposure\nexposure 1 10 9 11\n' >scale.txt
     printf 'remodel-states 1\nstate one lamps off lamp one 1\nstate two lamps off lamp two 1\n' >before.txt
     levels 0 patches --lights lamps.txt --places two.txt --scale scale.txt --states before.txt --set error=0.02 --out two/fit0
     local s=two/fit0/sheet.tsv; grep -qx 'scale 0 0 0' two/fit0/factors.txt || { cat two/fit0/factors.txt; fail "factors of nothing"; }
