@@ -1,19 +1,9 @@
 /* bake.c - textures of a floor from views that look down on it, against the radiance that it has: votes, joints, and
  * what fills the texels that no view shows. */
-#include "common/texture/bake.h"
+#include "tests/unit/common/texture/floor_views.h"
 
 #include "common/base/parallel.h"
 #include "common/texture/filled_atlas.h"
-#include "tests/unit/scratch.h"
-
-/* The floor is a square of 4 x 4 at z = 0, with id 5. All cameras are at a height of 4 and look straight down, so a
- * pixel is 1/16 wide on the floor. */
-enum { SIZE = 64, ID = 5 };
-static const double FOCAL = 64, HEIGHT = 4;
-
-static struct vec3 floor_triangles[2][3] = {{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}}, {{0, 0, 0}, {4, 4, 0}, {0, 4, 0}}};
-static struct surface floor_surface = {.id = ID, .normal = {0, 0, 1}, .triangles = 2};
-static const struct surfaces floor_only = {&floor_surface, floor_triangles, 1, 2, 4};
 
 /* Smooth, so that resampling changes it little. */
 static void radiance_at(float rgb[3], double x, double y)
@@ -26,23 +16,7 @@ static void radiance_at(float rgb[3], double x, double y)
 /* A view from above (x, y), whose colours are the floor's times `gain`. */
 static void make_view(struct source_view *v, double x, double y, float gain)
 {
-    *v = (struct source_view){
-        .camera = {.name = "v", .width = SIZE, .height = SIZE, .fx = FOCAL, .fy = FOCAL, .cx = 32, .cy = 32}};
-    struct view *c = &v->camera;
-    c->cam_from_world = (struct mat3){{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-    c->center = vec3_make(x, y, HEIGHT);
-    c->translation = vec3_scale(mat3_apply(c->cam_from_world, c->center), -1);
-    const double p[3][4] = {
-        {FOCAL, 0, -32, -FOCAL * x + 32 * HEIGHT}, {0, -FOCAL, -32, FOCAL * y + 32 * HEIGHT}, {0, 0, -1, HEIGHT}};
-    memcpy(v->project, p, sizeof p);
-    v->id = calloc(SIZE * SIZE, sizeof *v->id);
-    v->state = calloc(SIZE * SIZE, 1);
-    v->own = calloc(SIZE * SIZE, 1);
-    v->shows = calloc(ID + 1, 1);
-    v->shows[ID] = 1;
-    v->ids = ID + 1;
-    v->level_count = 1;
-    v->levels[0] = (struct source_level){SIZE, SIZE, calloc(SIZE * SIZE * 4, sizeof(float))};
+    floor_view(v, x, y);
     for (int py = 0; py < SIZE; py++)
         for (int px = 0; px < SIZE; px++) {
             const int at = py * SIZE + px;

@@ -1,16 +1,10 @@
 /* cleared_box.c - floors below a box that an edit clears, against the floor that is known there. */
-#include "common/texture/bake.h"
-#include "tests/unit/scratch.h"
+#include "tests/unit/common/texture/floor_views.h"
 
-/* The floor is a square of 4 x 4 at z = 0, with 64 x 64 texels. The box stands on its middle. Two cameras at a height
- * of 4 look straight down from its left and right, so that their pixels lie on texels: what they show is exact, and
- * what both of them miss is what the box stands on. */
-enum { SIZE = 64, ID = 5, VIEWS = 2 };
-static const double FOCAL = 64, HEIGHT = 4, BOX_TOP = 0.5, BOX[2] = {1.5, 2.5}, RIM = 1.0 / 16;
-
-static struct vec3 floor_triangles[2][3] = {{{0, 0, 0}, {4, 0, 0}, {4, 4, 0}}, {{0, 0, 0}, {4, 4, 0}, {0, 4, 0}}};
-static struct surface floor_surface = {.id = ID, .normal = {0, 0, 1}, .triangles = 2};
-static const struct surfaces floor_only = {&floor_surface, floor_triangles, 1, 2, 4};
+/* The floor has 64 x 64 texels. The box stands on its middle. Two cameras look down from its left and right, so that
+ * their pixels lie on texels: what they show is exact, and what both of them miss is what the box stands on. */
+enum { VIEWS = 2 };
+static const double BOX_TOP = 0.5, BOX[2] = {1.5, 2.5}, RIM = 1.0 / 16;
 
 /* The radiance of texel (x, y), x to the right and y down. */
 typedef double floor_texel(int x, int y);
@@ -62,23 +56,7 @@ static bool is_hidden(double x, double y, double fx, double fy)
 
 static void make_view(struct source_view *v, double x, double y, floor_texel *texel)
 {
-    *v = (struct source_view){
-        .camera = {.name = "v", .width = SIZE, .height = SIZE, .fx = FOCAL, .fy = FOCAL, .cx = 32, .cy = 32}};
-    struct view *c = &v->camera;
-    c->cam_from_world = (struct mat3){{{1, 0, 0}, {0, -1, 0}, {0, 0, -1}}};
-    c->center = vec3_make(x, y, HEIGHT);
-    c->translation = vec3_scale(mat3_apply(c->cam_from_world, c->center), -1);
-    const double p[3][4] = {
-        {FOCAL, 0, -32, -FOCAL * x + 32 * HEIGHT}, {0, -FOCAL, -32, FOCAL * y + 32 * HEIGHT}, {0, 0, -1, HEIGHT}};
-    memcpy(v->project, p, sizeof p);
-    v->id = calloc(SIZE * SIZE, sizeof *v->id);
-    v->state = calloc(SIZE * SIZE, 1);
-    v->own = calloc(SIZE * SIZE, 1);
-    v->shows = calloc(ID + 1, 1);
-    v->shows[ID] = 1;
-    v->ids = ID + 1;
-    v->level_count = 1;
-    v->levels[0] = (struct source_level){SIZE, SIZE, calloc(SIZE * SIZE * 4, sizeof(float))};
+    floor_view(v, x, y);
     for (int i = 0; i < SIZE * SIZE; i++) {
         const double fx = x + (i % SIZE + 0.5 - 32) * HEIGHT / FOCAL, fy = y - (i / SIZE + 0.5 - 32) * HEIGHT / FOCAL;
         const bool hidden = is_hidden(x, y, fx, fy);
