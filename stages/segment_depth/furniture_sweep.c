@@ -19,7 +19,7 @@
 #include "common/math/numbers.h"
 
 #define FIRST      0.94  /* distance of the farthest plane, relative to that of the face */
-#define STEP       2.5   /* of the distances, as part of them, in pixels of the focal length */
+#define STEP       5.0   /* of the distances, as part of them, in pixels of the focal length */
 #define NEAREST    0.15  /* of the camera's height above the floor: distance of the nearest plane, and ... */
 #define SEEN_FROM  0.25  /* ... of the nearest point of it */
 #define BLANK      0.35f /* a segment that matches that well has no need of another plane */
@@ -33,10 +33,11 @@
 #define UPRIGHT    0.95  /* cosine between the normals of level planes and the vertical, at least, and ... */
 #define LEVEL      0.2   /* ... those of upright planes, at most */
 #define PARALLEL   0.999 /* cosine between normals that count as one */
+#define NEAR_VIEWS 0xfu  /* other views with which planes are matched: the four that suit best, which come first */
 
 enum { SEEN_BY = 2 };   /* other views, at least, see a segment where it is found */
 enum { OWN = 1 << 20 }; /* number of a segment's own plane, as depth found it before */
-enum { AVERAGES = 3, MOST_PLANES = 256, REFINE = 8, MOST_DIRECTIONS = 8 };
+enum { AVERAGES = 3, MOST_PLANES = 128, REFINE = 8, MOST_DIRECTIONS = 8 };
 
 /* Planes with one normal: n . X = distance, X in the axes of the view. */
 struct direction {
@@ -151,7 +152,7 @@ static void match_now(void *ctx, size_t begin, size_t end, int thread)
     (void)thread;
     for (size_t i = begin; i < end; i++) {
         unsigned seen = 0;
-        s->cost[i] = may_lie(s, (int)i, s->now) ? match_cost_sweep(s->p->m, (int)i, s->now, ~0u, &seen) : NAN;
+        s->cost[i] = may_lie(s, (int)i, s->now) ? match_cost_sweep(s->p->m, (int)i, s->now, NEAR_VIEWS, &seen) : NAN;
         if (__builtin_popcount(seen) < SEEN_BY) s->cost[i] = NAN; /* what leaves the other pictures costs little */
         s->gain[i] = isnan(s->cost[i]) ? 0 : s->own[i] - s->cost[i];
     }
