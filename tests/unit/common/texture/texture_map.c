@@ -192,7 +192,7 @@ static void what_is_wrong_is_named_with_its_line(void **state)
         {HEAD FACE "gloss matt\ngloss matt\n",
          "a.txt:5: found \"gloss\", wanted one line \"gloss\" right after the face"},
         {HEAD FACE "outdoors\ngloss matt\n", "right after the face's line"},
-        {HEAD "fcae 3\n", "lamp, face, gloss, place, edge"},
+        {HEAD "fcae 3\n", "lamp, planned, face, gloss, place, edge"},
         {HEAD "fcae 3\n", "clear, keep or thing"},
         {HEAD "thing\n", "a.txt:3: found the end of the line, wanted the name of a thing"},
         {HEAD "thing sofa\n", "a.txt:3: found the end of the line, wanted what happens to it"},
