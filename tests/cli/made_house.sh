@@ -65,7 +65,7 @@ a_house_is_photographed()
 {
     made --seed 6 --rooms 3 --views 9 --size 64x64 --exposures 1 --out "$scratch/t"
     "$B/bin/simulate" --scene "$scratch/t" --out "$scratch/shots" --photo v000 --set samples=1 2>"$scratch/err" || { cat "$scratch/err"; fail "no photo"; }
-    [ -s "$scratch/shots/photos/v000.jpg" ] || fail "there is no photo"
+    [ -s "$scratch/shots/photos/v000.jpg" ] || fail "simulate wrote no photo"
 }
 wrong_numbers_are_refused()
 {

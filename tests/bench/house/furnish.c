@@ -7,7 +7,7 @@
 #define EYE   1.5
 #define APART 0.25 /* least between two cameras of a room: houses have many */
 
-/* The wall of the house on a side of a room; -1 if there is none, which cannot be. */
+/* The wall of the house on a side of a room. Each side has one; -1 would be a fault of the plan. */
 static int wall_of(const struct house *h, struct rect r, int side)
 {
     const bool upright = side == SIDE_EAST || side == SIDE_WEST;
