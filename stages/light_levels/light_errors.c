@@ -78,23 +78,7 @@ static enum status read_range(struct light_errors *e, struct textfile *t, const 
     return ST_OK;
 }
 
-static enum status read_fit(struct light_errors *e, const char *path, const struct light_groups *g,
-                            struct provenance *prov, struct err *err)
-{
-    struct textfile t = {0};
-    product_open(&t, NULL, PRODUCT_LIGHT_FIT, path, prov, err);
-    while (!err->status && textfile_next(&t)) {
-        char *word;
-        if (textfile_word(&t, "a statement", &word, err)) break;
-        if (!strcmp(word, "lamp")) read_lamp(e, &t, g, err);
-        if (!strcmp(word, "range")) read_range(e, &t, g, err);
-    }
-    textfile_release(&t);
-    return err->status;
-}
-
-/* -------------------------------------------------------------------------------------------------------- sky and
- * sun */
+/* ----------------------------------------------------------------------------------------------------- sky and sun */
 
 static void set_windows(struct light_errors *e, const struct light_groups *g, int first, struct group_error error)
 {
@@ -136,16 +120,25 @@ static enum status read_sun_line(struct light_errors *e, struct textfile *t, con
     return ST_OK;
 }
 
-static enum status read_sky(struct light_errors *e, const char *path, const struct light_groups *g,
-                            struct provenance *prov, struct err *err)
+/* ------------------------------------------------------------------------------------------------------------ files */
+
+struct statement {
+    const char *word;
+    enum status (*read)(struct light_errors *e, struct textfile *t, const struct light_groups *g, struct err *err);
+};
+
+/* Reads the lines of a product that begin with one of two words; others say nothing of errors. */
+static enum status read_statements(struct light_errors *e, enum product_id id, const char *path,
+                                   const struct statement statements[2], const struct light_groups *g,
+                                   struct provenance *prov, struct err *err)
 {
     struct textfile t = {0};
-    product_open(&t, NULL, PRODUCT_SKY, path, prov, err);
+    product_open(&t, NULL, id, path, prov, err);
     while (!err->status && textfile_next(&t)) {
         char *word;
         if (textfile_word(&t, "a statement", &word, err)) break;
-        if (!strcmp(word, "sky")) read_sky_line(e, &t, g, err);
-        if (!strcmp(word, "sun")) read_sun_line(e, &t, g, err);
+        for (int i = 0; !err->status && i < 2; i++)
+            if (!strcmp(word, statements[i].word)) statements[i].read(e, &t, g, err);
     }
     textfile_release(&t);
     return err->status;
@@ -154,11 +147,13 @@ static enum status read_sky(struct light_errors *e, const char *path, const stru
 enum status light_errors_read(struct light_errors *e, const char *fit, const char *sky, const struct light_groups *g,
                               struct provenance *prov, struct err *err)
 {
+    static const struct statement of_fit[2] = {{"lamp", read_lamp}, {"range", read_range}};
+    static const struct statement of_sky[2] = {{"sky", read_sky_line}, {"sun", read_sun_line}};
     const struct light_list *lights = &g->field->lights;
     *e = (struct light_errors){calloc((size_t)g->patch + 1, sizeof *e->of), g->patch};
     if (!e->of) return err_nomem(err, "groups of light", (size_t)g->patch * sizeof *e->of);
     for (int i = 0; i < lights->lamp_count; i++)
         if (lights->lamps[i].bound) e->of[i] = between(1, 1, BOUND);
-    if (fit && read_fit(e, fit, g, prov, err)) return err->status;
-    return sky ? read_sky(e, sky, g, prov, err) : ST_OK;
+    if (fit && read_statements(e, PRODUCT_LIGHT_FIT, fit, of_fit, g, prov, err)) return err->status;
+    return sky ? read_statements(e, PRODUCT_SKY, sky, of_sky, g, prov, err) : ST_OK;
 }

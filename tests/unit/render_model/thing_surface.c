@@ -257,15 +257,21 @@ static void see_ball(struct scene *s, int at)
     s->camera = camera;
 }
 
+/* The ball, which one view sees from +x. */
+static void make_ball_seen_from_x(struct scene *s)
+{
+    scene_make(s, to_ball);
+    s->camera = s->views[0] = looking_from(3.5, 2, 3);
+    see_ball(s, 0);
+}
+
 /* From behind nobody saw the ball: it is drawn in the colours of the front at the same height. */
 static void a_side_that_no_view_sees_has_the_colours_at_its_height(void **state)
 {
     static struct scene s;
     int upper = 0, lower = 0;
     (void)state;
-    scene_make(&s, to_ball);
-    s.camera = s.views[0] = looking_from(3.5, 2, 3);
-    see_ball(&s, 0);
+    make_ball_seen_from_x(&s);
     s.camera = looking_from(-1.5, 2, 3);
     draw(&s);
     for (int i = 0; i < W * H; i++) {
@@ -309,9 +315,7 @@ static void the_hull_is_what_a_thing_hides(void **state)
     static struct scene s;
     struct thing_hull h;
     (void)state;
-    scene_make(&s, to_ball);
-    s.camera = s.views[0] = looking_from(3.5, 2, 3);
-    see_ball(&s, 0);
+    make_ball_seen_from_x(&s);
     for (size_t i = 0; i < voxel_count(&s.volume.grid); i++)
         if (!s.volume.id[i]) s.volume.distance[i] = THING_UNSEEN;
     hull_of(&h, &s);
@@ -338,9 +342,7 @@ static void the_hull_leaves_out_what_is_free_or_of_another_thing(void **state)
     static struct scene s;
     struct thing_hull h;
     (void)state;
-    scene_make(&s, to_ball);
-    s.camera = s.views[0] = looking_from(3.5, 2, 3);
-    see_ball(&s, 0);
+    make_ball_seen_from_x(&s);
     forget_back(&s);
     for (int64_t i = 0; i < (int64_t)voxel_count(&s.volume.grid); i++) {
         const struct vec3 p = vec3_sub(thing_voxel_centre(&s.volume.grid, i), middle);
@@ -385,9 +387,7 @@ static void a_ray_meets_the_hull_where_no_surface_is(void **state)
     static struct scene s;
     int drawn = 0;
     (void)state;
-    scene_make(&s, to_ball);
-    s.camera = s.views[0] = looking_from(3.5, 2, 3);
-    see_ball(&s, 0);
+    make_ball_seen_from_x(&s);
     for (int64_t i = 0; i < (int64_t)voxel_count(&s.volume.grid); i++)
         if (thing_voxel_centre(&s.volume.grid, i).x < middle.x + 0.2)
             s.volume.id[i] = 0, s.volume.distance[i] = THING_UNSEEN;
