@@ -6,9 +6,10 @@
  * that range, about 2.5 cm of a room, refined to the robust mean around it (Tukey's biweight). The ceiling is not in
  * the source.
  *
- * Which cluster. For the floor the one with the densest window, because tables and chairs may share a larger cluster
- * than the floor's, but not a height. For the ceiling the highest one that is not small: beams and lamps below it
- * may have more and sharper points, but nothing is above it.
+ * Which cluster. For the floor the lowest one whose densest window is not much emptier than the densest of all: tables
+ * and chairs may share a larger cluster than the floor's, but not a height; and a table or a bed near the cameras may
+ * have more points than the floor, but nothing is below that. For the ceiling the highest one that is not small: beams
+ * and lamps below it may have more and sharper points, but nothing is above it.
  *
  * Error. The robust mean is an M-estimator: with weights w and distances d its standard error is that of the
  * gradient sum w d over the slope sum (w d)'. Neighbouring points err alike, so gradients are summed over blocks of
@@ -31,6 +32,7 @@ static const double WINDOW = 0.008; /* for the densest heights: about 2.5 cm of 
 static const double REACH = 0.02;   /* max distance of points that count for a level */
 static const double MIN_SPREAD = 1e-6;
 static const double MIN_CLUSTER = 0.2; /* of a ceiling, as a fraction of the largest cluster */
+static const double MIN_WINDOW = 0.4;  /* of a floor, as a fraction of the densest window */
 /* spreads at which a point's weight is zero: fewer than the usual 4.685, because points near a floor or ceiling
  * (carpets, beams, rounded corners) lie on one side of it and bias the mean */
 static const double BIWEIGHT = 2;
@@ -158,21 +160,21 @@ static enum status find_error(struct height_level *level, const struct height_po
     return ST_OK;
 }
 
-/* The height at which refinement starts. The floor's cluster is the one with the densest window: tables and chairs may
- * share a larger cluster than the floor's, but not a height. The ceiling's is the highest cluster that is not small:
- * beams, lamps and the heads of windows below it may have more and sharper points, but nothing is above it. */
+/* The height at which refinement starts: of the cluster that the head of this file names. */
 static double initial_height(const double *heights, const size_t *begin, int k, int side, double window)
 {
     double middle[CLUSTERS] = {0};
     size_t count[CLUSTERS] = {0}, largest = 0;
-    int densest_one = 0, highest = k - 1;
+    size_t most = 0;
+    int lowest = 0, highest = k - 1;
     for (int j = 0; j < k; j++) {
         count[j] = densest(&middle[j], heights, begin[j], begin[j + 1], window);
-        if (count[j] > count[densest_one]) densest_one = j;
+        if (count[j] > most) most = count[j];
         if (begin[j + 1] - begin[j] > largest) largest = begin[j + 1] - begin[j];
     }
+    while ((double)count[lowest] < MIN_WINDOW * (double)most) lowest++;
     while ((double)(begin[highest + 1] - begin[highest]) < MIN_CLUSTER * (double)largest) highest--;
-    return middle[side > 0 ? densest_one : highest];
+    return middle[side > 0 ? lowest : highest];
 }
 
 enum status height_find_level(struct height_level *level, int side, const struct mat3 *axes, struct vec3 origin,

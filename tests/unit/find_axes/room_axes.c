@@ -195,6 +195,21 @@ static void tables_do_not_become_the_floor(void **state)
     synthetic_room_release(&r);
 }
 
+/* It has 1.7 times as many points as the floor. */
+static void a_bed_does_not_become_the_floor(void **state)
+{
+    (void)state;
+    struct room_spec m = plain();
+    struct synthetic_room r;
+    struct room room;
+    m.furniture = 0.65;
+    m.bed = true;
+    m.noise = 0.003;
+    make_and_find(&room, &r, &m);
+    assert_true(fabs(room_floor(&r, &room.axes)) < 0.001);
+    synthetic_room_release(&r);
+}
+
 static void a_ball_has_no_axes(void **state)
 {
     (void)state;
@@ -288,6 +303,7 @@ int main(void)
         cmocka_unit_test(the_ceiling_is_that_of_the_smaller_error),
         cmocka_unit_test(two_directions_are_enough),
         cmocka_unit_test(tables_do_not_become_the_floor),
+        cmocka_unit_test(a_bed_does_not_become_the_floor),
         cmocka_unit_test(a_ball_has_no_axes),
         cmocka_unit_test(a_room_without_floor_is_an_error),
         cmocka_unit_test(records_of_rotated_photos_give_the_up_direction),

@@ -22,6 +22,7 @@ struct room_spec { /* parameters of a room; metres and degrees */
     double noise, normal_noise;
     double outliers;  /* part of all points */
     double furniture; /* part of the floor's points that are moved to tables and chairs */
+    bool bed;         /* nine tenths of them lie on a bed */
     double ceiling;   /* part of the ceiling's points that exist */
     bool one_wall_direction;
     struct mat3 world_from_room; /* a rotation */
@@ -75,7 +76,9 @@ static inline bool room_point(const struct room_spec *m, const struct rng *rng, 
     if (axis == 1 && m->one_wall_direction) return false;
     if (axis == 2 && high && rng_uniform(rng, i, 5) >= m->ceiling) return false;
     if (axis == 2 && !high && rng_uniform(rng, i, 5) < m->furniture) /* tops of a chair, a table and a board */
-        p[2] = rng_uniform(rng, i, 6) < 0.4 ? 0.45 : rng_uniform(rng, i, 6) < 0.8 ? 0.75 : 1.2;
+        p[2] = rng_uniform(rng, i, 6) < 0.4 || (m->bed && rng_uniform(rng, i, 6) < 0.9) ? 0.45
+               : rng_uniform(rng, i, 6) < 0.8                                           ? 0.75
+                                                                                        : 1.2;
     for (int k = 0; k < 3; k++) p[k] += m->noise * room_gauss(rng, i, 10 + 2 * (uint64_t)k);
     const struct vec3 off =
         vec3_scale(vec3_make(room_gauss(rng, i, 20), room_gauss(rng, i, 22), room_gauss(rng, i, 24)),
