@@ -25,6 +25,7 @@
 #define BLANK      0.35f /* a segment that matches that well has no need of another plane */
 #define LEAST_GAIN 0.3f  /* of a segment on a surface, averaged */
 #define GOOD       0.55  /* largest matching cost of a surface */
+#define TEXTURE    14.0  /* match_texture() of a surface, at least: a blank wall in different light matches anywhere */
 #define BEFORE     1.03  /* factor by which it must be nearer than its face */
 #define SMALLEST   0.001 /* part of the view that a surface fills at least */
 #define DISTINCT   0.4   /* gain of a segment that matches distinctly */
@@ -210,6 +211,17 @@ static int walk(const struct sweep *s, bool *walked, int *list)
     return end;
 }
 
+static double texture_of(const struct sweep *s, const int *list, int count)
+{
+    double sum = 0, pixels = 0;
+    for (int n = 0; n < count; n++) {
+        const int size = s->p->m->segments->segments[list[n]].pixels;
+        sum += size * match_texture(s->p->m, list[n]);
+        pixels += size;
+    }
+    return sum / pixels;
+}
+
 /* The mean matching cost of a surface's pixels on a plane; NULL: on their own. */
 static double cost_of(const struct sweep *s, const int *list, int count, const struct plane *plane)
 {
@@ -272,6 +284,7 @@ static enum status take_surfaces(struct plane *planes, double *distinct, struct 
         const int count = walk(s, walked, list);
         for (int n = 0; n < count; n++) pixels += g->segments[list[n]].pixels;
         if (pixels < SMALLEST * g->width * g->height) continue;
+        if (texture_of(s, list, count) < TEXTURE) continue;
         const bool own = s->number[i] == OWN;
         if (own) cost = cost_of(s, list, count, NULL);
         const struct plane plane = own ? planes[i] : refine(s, list, count, &cost);
@@ -352,6 +365,7 @@ void furniture_sweep_extend(double *distinct, struct plane *found, const struct 
         for (int k = 0; k < p->furniture->count; k++)
             still_found |= fabs(plane_at(p->furniture->planes[k], g->cx, g->cy) - at) <= SAME * at;
         if (!face || !still_found || plane_at(found[i], g->cx, g->cy) > 0) continue;
+        if (match_texture(p->m, i) < TEXTURE) continue;
         const float gain =
             match_cost_sweep(p->m, i, *face, ~0u, NULL) - match_cost_sweep(p->m, i, planes[i], ~0u, NULL);
         if (!(gain >= LEAST_GAIN) || !(at > BEFORE * plane_at(*face, g->cx, g->cy))) continue;

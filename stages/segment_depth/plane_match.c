@@ -282,6 +282,16 @@ int match_evidence(const struct matcher *m, int segment, struct plane plane, uns
     return count;
 }
 
+double match_texture(const struct matcher *m, int segment)
+{
+    const int pixels = m->segments->segments[segment].pixels;
+    const int16_t *at = m->features + (size_t)m->first[segment] * FEATURE_CHANNELS;
+    double sum = 0;
+    for (int i = 0; i < pixels; i++, at += FEATURE_CHANNELS)
+        sum += hypot(at[3] / (double)FEATURE_UNIT - 128, at[4] / (double)FEATURE_UNIT - 128);
+    return sum / pixels;
+}
+
 struct selection {
     struct matcher *m;
     const struct plane *planes;

@@ -136,6 +136,9 @@ float match_cost_sweep(const struct matcher *m, int segment, struct plane plane,
 /* The mean cost by rank of the neighbours that see the segment on the plane; MATCH_WORST if none does. Returns how many
  * do. */
 int match_evidence(const struct matcher *m, int segment, struct plane plane, unsigned occluded, float *cost);
+/* The mean length of the normalized gradients of a segment's pixels (match_features.h), in grey levels: up to 25 where
+ * it has texture, and up to 15 where it has nothing but noise. */
+double match_texture(const struct matcher *m, int segment);
 /* Mean by rank of `count` costs in ascending order, of `useful` neighbours; those that are missing cost out_of_view. */
 float match_rank(const struct matcher *m, const float *sorted, int count, int useful, float out_of_view);
 /* The neighbours that a segment is matched with, as a bit set. */

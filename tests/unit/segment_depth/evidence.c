@@ -211,9 +211,28 @@ static void a_neighbour_that_shows_something_else_is_left_out(void **state)
     bench_release();
 }
 
+/* 14 is what furniture_sweep.c asks for. */
+static void a_blank_wall_has_no_texture(void **state)
+{
+    (void)state;
+    bench_empty();
+    scene_wall(&b.scene, -4, 0, 4, 4, 8, 0)->contrast = 0;
+    scene_wall(&b.scene, 4, 0, 4, 4, 8, 0);
+    scene_view(&b.scene, W, H, FOCAL, 0, 0, 0, 0);
+    scene_view(&b.scene, W, H, FOCAL, 0.3, 0, 0, 0);
+    bench_make(0.15, 0.4);
+    for (int i = 0; i < b.segments.count; i++) {
+        const struct segment *g = &b.segments.segments[i];
+        if (g->x1 < W / 2 - 2) assert_near(match_texture(&b.matcher, i), 0, 1e-9);
+        if (g->x0 > W / 2 + 2) assert_true(match_texture(&b.matcher, i) > 14 && match_texture(&b.matcher, i) < 30);
+    }
+    bench_release();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_blank_wall_has_no_texture),
         cmocka_unit_test(only_neighbours_that_see_the_segment_are_evidence),
         cmocka_unit_test(occluded_and_excluded_neighbours_are_no_evidence),
         cmocka_unit_test(evidence_is_the_mean_by_rank_of_those_that_see_it),
