@@ -14,8 +14,8 @@
  * them: their cells are solid, or they are mirrors.
  *
  * Bright areas. A blown-out window has nothing that could match, and takes its depth from the wall around it. So does a
- * patch of sun. A bright area where nothing matched, which fills its rectangle and has edges on its sides, is therefore
- * a doubtful window: a person decides.
+ * patch of sun, but that seldom is a rectangle along its wall. So a bright area where nothing matched, which fills its
+ * rectangle, is a window if it has an edge on each side. With three it is a doubtful one: a person decides.
  *
  * Sides. Each side moves by a few cells to the largest step of brightness along it, because pictures have sharper edges
  * than depth. It moves farther outwards than inwards: the front of a reveal is near the plane, and its depth may be on
@@ -43,12 +43,13 @@ static const double SECOND_STEP = 0.3;    /* of the largest step of brightness, 
 static const double MAX_FOOT = 0.15;      /* of a doorway's lower side, of the ceiling's height */
 static const double SAME = 0.5;           /* overlap of equal openings, of the smaller area */
 /* of a bright area: */
-static const double MIN_BRIGHT = 1.4;  /* of a cell, times the wall */
-static const double MAX_MATCHED = 0.4; /* mean confidence of its cells */
-static const double MIN_FILL = 0.7;    /* of its rectangle's cells that are bright */
-static const double MIN_EDGE = 0.5;    /* step of brightness at a side, of that to the wall */
-enum { EDGE_BEGIN = 1, EDGE_END = 4 }; /* cells from a side: lines whose brightness is compared */
-enum { MIN_EDGES = 3 };                /* sides with such a step */
+static const double MIN_BRIGHT = 1.4;       /* of a cell, times the wall */
+static const double MAX_MATCHED = 0.4;      /* mean confidence of its cells */
+static const double MIN_FILL = 0.7;         /* of its rectangle's cells that are bright */
+static const double MIN_WINDOW_FILL = 0.75; /* the same of a window that is not doubtful, with edges on all sides */
+static const double MIN_EDGE = 0.5;         /* step of brightness at a side, of that to the wall */
+enum { EDGE_BEGIN = 1, EDGE_END = 4 };      /* cells from a side: lines whose brightness is compared */
+enum { MIN_EDGES = 3 };                     /* sides with such a step */
 
 struct rect { /* cells begin <= x < end, foot <= y < top */
     int begin, foot, end, top;
@@ -359,10 +360,13 @@ static bool is_blown_out(const struct wall_raster *r, const signed char *state, 
            edges(r, rect, e) >= MIN_EDGES;
 }
 
-static bool overlaps_opening(const struct suggestion *s, const struct suggested_opening *o)
+static double area_of(const struct suggested_opening *o) { return (o->end - o->begin) * (o->top - o->foot); }
+
+/* Whether an opening covers most of another one that is as large or larger. */
+static bool is_within_another(const struct suggestion *s, const struct suggested_opening *o)
 {
     for (int i = 0; i < s->opening_count; i++)
-        if (is_same(&s->openings[i], o)) return true;
+        if (is_same(&s->openings[i], o) && (o->doubtful || area_of(o) <= area_of(&s->openings[i]))) return true;
     return false;
 }
 
@@ -387,8 +391,8 @@ static enum status try_region(struct suggestion *s, const struct finder *f, cons
     if (blown ? !is_blown_out(r, f->state, &rect, &e) : !is_window(&e)) return ST_OK;
     refine(&rect, r, e.wall);
     struct suggested_opening o = opening_from_rect(r, &rect, f->wall);
-    o.doubtful = blown;
-    if (blown && overlaps_opening(s, &o)) return ST_OK;
+    o.doubtful = blown && !(edges(r, &rect, &e) == 4 && filled(r, f->state, &rect) >= MIN_WINDOW_FILL);
+    if (blown && is_within_another(s, &o)) return ST_OK;
     return replace(s, &o, err);
 }
 

@@ -238,16 +238,28 @@ static void a_bright_poster_is_no_window(void **state)
     assert_no_window(POSTER, 6);
 }
 
-static void a_bright_rectangle_that_nothing_matches_is_a_doubtful_window(void **state)
+/* Blown out, it has the wall's depth. */
+static void a_bright_rectangle_with_four_edges_is_a_window(void **state)
 {
     (void)state;
     for (uint64_t seed = 1; seed <= 3; seed++) {
         struct suggestion s;
         suggest_made(&s, &(struct room){.thing = SUN}, NULL, seed);
         assert_window(&s, RECT[0], RECT[1], RECT[2], RECT[3]);
-        assert_true(s.openings[0].doubtful);
+        assert_false(s.openings[0].doubtful);
         suggest_release(&s);
     }
+}
+
+/* A high sofa hides the fourth. */
+static void a_bright_rectangle_with_three_edges_is_a_doubtful_window(void **state)
+{
+    (void)state;
+    struct suggestion s;
+    suggest_made(&s, &(struct room){.thing = SUN, .sofa = {0, 0, 5, 1.35}}, NULL, 16);
+    assert_int_equal(s.opening_count, 1);
+    assert_true(s.openings[0].doubtful);
+    suggest_release(&s);
 }
 
 static void a_slanted_patch_of_sun_is_no_window(void **state)
@@ -330,7 +342,8 @@ int main(void)
         cmocka_unit_test(a_window_found_from_points_is_corrected),
         cmocka_unit_test(a_bare_wall_has_no_window),
         cmocka_unit_test(a_bright_poster_is_no_window),
-        cmocka_unit_test(a_bright_rectangle_that_nothing_matches_is_a_doubtful_window),
+        cmocka_unit_test(a_bright_rectangle_with_four_edges_is_a_window),
+        cmocka_unit_test(a_bright_rectangle_with_three_edges_is_a_doubtful_window),
         cmocka_unit_test(a_slanted_patch_of_sun_is_no_window),
         cmocka_unit_test(the_glow_of_a_lamp_is_no_window),
         cmocka_unit_test(a_mirror_is_no_window),
