@@ -49,7 +49,11 @@ foresee_film()
 end_judge_photos()
 {
     [ "$goal" = doctor ] || return 0
-    echo "list   $S/judgement.txt"
-    foresee_film
+    if [ -e "$S/judgement.txt" ]; then
+        echo "list   $S/judgement.txt"
+        foresee_film
+    else
+        echo "note  the cameras are given, so the photos were not compared with each other"
+    fi
     common/run/doctor.sh
 }

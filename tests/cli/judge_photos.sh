@@ -78,6 +78,10 @@ one_command_looks_at_machine_and_photos()
     [ ! -e out/d/sfm ] || fail "it went on to poses"
     make -s DEPS=manual doctor >log 2>&1 || { cat log; fail "make doctor without a scene"; }
     ! grep judge log || fail "photos without a scene"
+    # photos whose cameras are given are not matched, so that nothing judges them
+    photos given --views 3 --size 64x48 >/dev/null
+    make -s DEPS=manual SCENE=g PHOTOS=given/photos SFM=given/model doctor >log 2>&1 || { cat log; fail "make doctor with given cameras"; }
+    grep -q '^note  the cameras are given' log && ! grep -q judgement log || { cat log; fail "it names a list that was not made"; }
 }
 
 # two panoramas that overlap: twelve views of two places
