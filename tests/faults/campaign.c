@@ -124,12 +124,15 @@ void campaign_opened(void *data, const char *path)
     if (c.opened_count < 4096) c.opened[c.opened_count++] = strdup(real + n + 1);
 }
 
+/* A file ".NAME.XXXXXX.tmp", or one in such a folder. */
 static bool is_temporary(const char *path)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
-    const size_t n = strlen(name);
-
-    return *name == '.' && n > 4 && !strcmp(name + n - 4, ".tmp");
+    for (const char *p = path; *p;) {
+        const size_t n = strcspn(p, "/");
+        if (*p == '.' && n > 4 && !strncmp(p + n - 4, ".tmp", 4)) return true;
+        p += n + (p[n] == '/');
+    }
+    return false;
 }
 
 static bool is_right(const struct tree_file *product)
@@ -445,11 +448,25 @@ static void first_run(void)
     memset(c.page, 0, sizeof *c.page);
     if (!run(&r, (struct trace_fault){0}, true)) die(said);
     if (!tree_read(&after, c.folder)) die("the folder cannot be read");
-    /* what it made: its products; all others are inputs or belong to others */
+    /* what it made: its products; all others are inputs or belong to others. A file that would get the bytes that it has
+     * is not written at all */
+    bool any = false;
+    const char *out = NULL;
+    for (int i = 1; c.argv[i]; i++)
+        if (!strcmp(c.argv[i - 1], "--out")) out = c.argv[i];
+    if (out && tree_find(&start, out)) {
+        tree_remove(c.folder, out);
+        any = true;
+    }
     for (size_t i = 0; i < after.count; i++) {
         const struct tree_file *old = tree_find(&start, after.files[i].path);
-        if (!old || !tree_same(old, &after.files[i])) tree_remove(c.folder, after.files[i].path);
+        if (old && tree_same(old, &after.files[i])) continue;
+        tree_remove(c.folder, after.files[i].path);
+        any = true;
     }
+    for (size_t i = 0; !any && out && i < after.count; i++)
+        if (!strncmp(after.files[i].path, out, strlen(out)) && after.files[i].path[strlen(out)] == '/')
+            tree_remove(c.folder, after.files[i].path);
     tree_release(&start);
     tree_release(&after);
     if (!tree_read(&c.before, c.folder)) die("the folder cannot be read");
@@ -560,5 +577,7 @@ int main(int argc, char **argv)
         damaged++;
     }
     write_results();
+    memset(c.page, 0, sizeof *c.page);
+    run(&r, (struct trace_fault){0}, false); /* others read its products */
     return 0;
 }

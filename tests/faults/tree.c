@@ -1,3 +1,4 @@
+/* tree.c - see tree.h. */
 #include "tests/faults/tree.h"
 
 #include <ftw.h>
@@ -98,4 +99,8 @@ void tree_remove(const char *folder, const char *path)
 
     snprintf(name, sizeof name, "%s/%s", folder, path);
     unlink(name);
+    for (char *slash; (slash = strrchr(name, '/')) && slash > name + strlen(folder);) {
+        *slash = '\0';
+        if (rmdir(name)) return;
+    }
 }

@@ -27,6 +27,6 @@ bool tree_same(const struct tree_file *a, const struct tree_file *b); /* not tou
 /* The whole file; the caller frees it. NULL: it cannot be read. */
 char *tree_bytes(const char *folder, const char *path, size_t *size);
 bool tree_write(const char *folder, const char *path, const void *bytes, size_t size);
-void tree_remove(const char *folder, const char *path);
+void tree_remove(const char *folder, const char *path); /* and folders that are empty then */
 
 #endif
