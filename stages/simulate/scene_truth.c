@@ -151,7 +151,19 @@ struct text_job {
     const struct shoot *shoot;
     const struct simulate_params *params;
     const struct irradiance_point *points;
+    struct err *err; /* of a name without memory */
 };
+
+static void print_file_name(FILE *to, const char *before, const struct text_job *job, const struct shoot_photo *photo,
+                            int exposure)
+{
+    char *name = photo_file_name(job->shoot, photo, exposure);
+    if (name)
+        fprintf(to, "%s%s", before, name);
+    else
+        err_nomem(job->err, "a photo's file name", strlen(photo->name));
+    free(name);
+}
 
 static void print_faces(FILE *to, const struct text_job *job)
 {
@@ -183,9 +195,8 @@ static void print_exposures(FILE *to, const struct text_job *job)
     for (int i = 0; i < s->photo_count; i++)
         for (int k = 0; s->photos[i].kind == SHOOT_REFERENCE && k < shoot_exposures(s, &s->photos[i]).count; k++) {
             const struct shoot_exposure *e = &shoot_exposures(s, &s->photos[i]).list[k];
-            char *file = photo_file_name(s, &s->photos[i], k);
-            fprintf(to, "%s %.9g %.9g %.9g %.9g\n", file ? file : "", e->seconds, e->f_number, e->iso, e->filter);
-            free(file);
+            print_file_name(to, "", job, &s->photos[i], k);
+            fprintf(to, " %.9g %.9g %.9g %.9g\n", e->seconds, e->f_number, e->iso, e->filter);
         }
 }
 
@@ -210,11 +221,8 @@ static void print_lists(FILE *to, const struct text_job *job)
         fprintf(to, "SHOT_%s :=", photo->name);
         if (photo->kind == SHOOT_PHOTO && !strcmp(job->params->truth, "yes"))
             fprintf(to, " truth/depth/%s.exr truth/ids/%s.exr truth/hdr/%s.exr", photo->name, photo->name, photo->name);
-        for (int k = 0; k < exposures; k++) {
-            char *name = photo_file_name(job->shoot, photo, k);
-            if (name) fprintf(to, " %s/%s", photo->kind == SHOOT_REFERENCE ? "lri" : "photos", name);
-            free(name);
-        }
+        for (int k = 0; k < exposures; k++)
+            print_file_name(to, photo->kind == SHOOT_REFERENCE ? " lri/" : " photos/", job, photo, k);
         fputc('\n', to);
     }
 }
@@ -229,7 +237,7 @@ static enum status write_text(const char *folder, enum product_id id,
     if (!product_path_in(path, folder, id, NULL, err) && !outfile_open(&f, path, err)) {
         if (prov) provenance_print(prov, f.fp);
         print(f.fp, job);
-        outfile_commit(&f, err);
+        if (!err->status) outfile_commit(&f, err);
     }
     outfile_discard(&f);
     return err->status;
@@ -272,7 +280,7 @@ enum status truth_write(const struct world *w, const struct shoot *s, const char
 {
     const int count = params->irradiance_points;
     struct irradiance_point *points = calloc((size_t)count + 1, sizeof *points);
-    struct text_job job = {w, s, params, points};
+    struct text_job job = {w, s, params, points, err};
     char truth[FILE_PATH];
     if (!points) err_nomem(err, "irradiance points", (size_t)count * sizeof *points);
     if (!err->status && !file_path(truth, out, "truth", "", err) && !write_scene(w, folder, "scene.txt", truth, err) &&
@@ -290,7 +298,7 @@ enum status truth_write(const struct world *w, const struct shoot *s, const char
 enum status truth_write_edited(const struct world *w, const struct shoot *s, const char *folder, const char *out,
                                const char *edit, const struct provenance *prov, struct err *err)
 {
-    struct text_job job = {.world = w};
+    struct text_job job = {.world = w, .err = err};
     char from[FILE_PATH], below[FILE_PATH], truth[FILE_PATH];
     snprintf(from, sizeof from, "scene-%s.txt", edit);
     snprintf(below, sizeof below, "truth/edited-%s", edit);
