@@ -349,8 +349,19 @@ static enum status write_file(struct gltf *g, const char *json)
     return g->err->status;
 }
 
+/* Jansson's functions leave out what they have no memory for, and only say so one by one. This notes it for all. */
+static bool starved;
+static void *take(size_t size)
+{
+    void *p = malloc(size);
+    if (!p) starved = true;
+    return p;
+}
+
 enum status write_gltf(const struct export_scene *s, struct err *err)
 {
+    starved = false;
+    json_set_alloc_funcs(take, free);
     struct gltf g = {.s = s, .err = err, .views = json_array(), .accessors = json_array(), .meshes = json_array()};
     g.nodes = json_array();
     g.materials = json_array();
@@ -373,6 +384,7 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
             json_pack("[{s:i, s:i, s:i, s:i}]", "magFilter", 9729, "minFilter", 9987, "wrapS", 33071, "wrapT", 33071));
     }
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    if (!err->status && starved) err_nomem(err, "a glTF model", g.bin.size);
     if (!err->status && !text) err_set(err, ST_DATA, "the model cannot be written as glTF: a name is not UTF-8.");
     if (!err->status) write_file(&g, text);
     free(text);
