@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
+#include <new>
 #include <vector>
 
 #include <ceres/ceres.h>
@@ -58,27 +60,33 @@ void set_bounds(ceres::Problem &to, const struct curve_fit *problem, double *x)
 enum status ceres_curve_fit(struct curve_fit_outcome *outcome, const struct curve_fit *problem, double *x,
                             struct err *err)
 {
-    evaluation all(problem, x);
-    ceres::Problem::Options how;
-    how.evaluation_callback = &all;
-    ceres::Problem ceres_problem(how);
-    for (int i = 0; i < problem->blocks; i++)
-        ceres_problem.AddResidualBlock(new block(&all, i),
-                                       problem->cauchy > 0 ? new ceres::CauchyLoss(problem->cauchy) : nullptr, x);
-    set_bounds(ceres_problem, problem, x);
+    try {
+        evaluation all(problem, x);
+        ceres::Problem::Options how;
+        how.evaluation_callback = &all;
+        ceres::Problem ceres_problem(how);
+        for (int i = 0; i < problem->blocks; i++)
+            ceres_problem.AddResidualBlock(new block(&all, i),
+                                           problem->cauchy > 0 ? new ceres::CauchyLoss(problem->cauchy) : nullptr, x);
+        set_bounds(ceres_problem, problem, x);
 
-    ceres::Solver::Options options;
-    options.linear_solver_type = ceres::DENSE_QR;
-    options.max_num_iterations = problem->iterations;
-    options.function_tolerance = 1e-9;
-    options.parameter_tolerance = 1e-9;
-    options.num_threads = 1;
-    options.logging_type = ceres::SILENT;
-    ceres::Solver::Summary summary;
-    ceres::Solve(options, &ceres_problem, &summary);
-    outcome->cost = summary.final_cost;
-    outcome->converged = summary.termination_type == ceres::CONVERGENCE;
-    outcome->iterations = static_cast<int>(summary.iterations.size());
-    if (summary.IsSolutionUsable()) return ST_OK;
-    return err_set(err, ST_DATA, "the least-squares solver failed: %s", summary.message.c_str());
+        ceres::Solver::Options options;
+        options.linear_solver_type = ceres::DENSE_QR;
+        options.max_num_iterations = problem->iterations;
+        options.function_tolerance = 1e-9;
+        options.parameter_tolerance = 1e-9;
+        options.num_threads = 1;
+        options.logging_type = ceres::SILENT;
+        ceres::Solver::Summary summary;
+        ceres::Solve(options, &ceres_problem, &summary);
+        outcome->cost = summary.final_cost;
+        outcome->converged = summary.termination_type == ceres::CONVERGENCE;
+        outcome->iterations = static_cast<int>(summary.iterations.size());
+        if (summary.IsSolutionUsable()) return ST_OK;
+        return err_set(err, ST_DATA, "the least-squares solver failed: %s", summary.message.c_str());
+    } catch (const std::bad_alloc &) {
+        return err_nomem(err, "a least-squares problem", 0);
+    } catch (const std::exception &e) {
+        return err_set(err, ST_INTERNAL, "the least-squares solver failed: %s", e.what());
+    }
 }

@@ -339,9 +339,7 @@ std::unique_ptr<ceres::Problem> make_problem(struct bundle *b)
 
 enum { DENSE_IMAGES = 150 }; /* up to which the reduced camera system is solved as a dense one */
 
-} // namespace
-
-enum status ceres_bundle_adjust(struct bundle *b, struct err *err)
+enum status adjust(struct bundle *b, struct err *err)
 {
     std::unique_ptr<ceres::Problem> problem = make_problem(b);
     ceres::Solver::Options options;
@@ -372,7 +370,7 @@ enum status ceres_bundle_adjust(struct bundle *b, struct err *err)
     return err_set(err, ST_DATA, "bundle adjustment failed: %s", summary.message.c_str());
 }
 
-enum status ceres_bundle_shift_sigma(double *sigma, struct bundle *b, struct err *err)
+enum status find_shift_sigma(double *sigma, struct bundle *b, struct err *err)
 {
     std::unique_ptr<ceres::Problem> problem = make_problem(b);
     ceres::Covariance::Options options;
@@ -392,4 +390,28 @@ enum status ceres_bundle_shift_sigma(double *sigma, struct bundle *b, struct err
         sigma[2 * i + 1] = sqrt(block[3]);
     }
     return ST_OK;
+}
+
+/* Calls one of these; what C++ throws becomes an error. */
+template <typename call> enum status guard(call what, struct err *err)
+{
+    try {
+        return what();
+    } catch (const std::bad_alloc &) {
+        return err_nomem(err, "a bundle adjustment", 0);
+    } catch (const std::exception &e) {
+        return err_set(err, ST_INTERNAL, "bundle adjustment failed: %s", e.what());
+    }
+}
+
+} // namespace
+
+enum status ceres_bundle_adjust(struct bundle *b, struct err *err)
+{
+    return guard([=] { return adjust(b, err); }, err);
+}
+
+enum status ceres_bundle_shift_sigma(double *sigma, struct bundle *b, struct err *err)
+{
+    return guard([=] { return find_shift_sigma(sigma, b, err); }, err);
 }
