@@ -45,7 +45,8 @@ static void on_signal(int sig)
 
 static void arrange_removal(void)
 {
-    static const int signals[] = {SIGINT, SIGTERM, SIGHUP};
+    /* a library that has no memory, or a fault of ours, raises the last three */
+    static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGABRT, SIGSEGV, SIGBUS};
     struct sigaction old, action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
 
     sigemptyset(&action.sa_mask);

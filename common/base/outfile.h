@@ -1,8 +1,8 @@
 /* outfile.h - output files that appear complete or not at all.
  *
  * A temporary file in the same folder (".NAME.XXXXXX.tmp") is written, fsynced and renamed. Without a commit it is
- * removed by outfile_discard() or at exit, also after SIGINT, SIGTERM and SIGHUP. SIGKILL leaves a dot file, which
- * nothing reads as a product. */
+ * removed by outfile_discard() or at exit, also after SIGINT, SIGTERM and SIGHUP, and when the program is ended by a
+ * fault (SIGABRT, SIGSEGV, SIGBUS). SIGKILL leaves a dot file, which nothing reads as a product. */
 #ifndef REMODEL_OUTFILE_H
 #define REMODEL_OUTFILE_H
 
