@@ -16,14 +16,16 @@ FLAGS.asan := -O2 -g1 -fsanitize=address,undefined -fno-sanitize-recover=undefin
 UNIT_FLAGS.asan := -O1
 FLAGS.debug := -O0 -g
 FLAGS.clang := -O2 -g
+# the parsers, with what libFuzzer wants to see of them (tests/fuzz/fuzz.sh)
+FLAGS.fuzz := -O1 -g -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=undefined
 # no instruction that only newer processors have, on any processor: slower, the same products (common/math/lanes.h)
 FLAGS.portable := -O3 -g
 # for another processor: its unit tests run under an emulator (tests/long/arm64.sh)
 FLAGS.arm64 := -O3 -g
 ifeq ($(FLAGS.$(FLAVOR)),)
-  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug clang portable arm64)
+  $(error FLAVOR=$(FLAVOR) is not one of: release asan debug clang fuzz portable arm64)
 endif
-ifeq ($(FLAVOR),clang)
+ifneq ($(filter clang fuzz,$(FLAVOR)),)
   CC := clang
   CXX := clang++
 endif
@@ -66,7 +68,9 @@ STAGE_LIBS := $(STAGES:%=$(B)/lib/%.a)
 UNIT_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/unit/*/*.c tests/unit/*/*/*.c))
 BENCHES := $(patsubst %.c,$(B)/%,$(wildcard tests/bench/*.c))
 FUZZ_TESTS := $(patsubst %.c,$(B)/%,$(wildcard tests/fuzz/fuzz_*.c))
-TOOLS := $(B)/tests/pipeline/make_photos $(B)/tests/pipeline/picture_tool
+# the campaign of faults knows the calls of x86-64
+FAULT_TOOLS := $(if $(X86),$(B)/tests/faults/campaign)
+TOOLS := $(B)/tests/pipeline/make_photos $(B)/tests/pipeline/picture_tool $(FAULT_TOOLS)
 
 .PHONY: build tests-build bench-build unit-build fuzz-build
 build: $(BINS) $(B)/bin/print_graph $(STAGES:%=$(B)/stripped/%)
@@ -124,8 +128,11 @@ TESTS := $(UNIT_TESTS) $(FUZZ_TESTS) $(BENCHES) $(TOOLS)
 # a test's program is linked by what is fastest here: there are hundreds, and no product depends on them
 FAST_LINK := $(if $(CROSS),,$(if $(shell command -v ld.lld),-fuse-ld=lld))
 $(TESTS): $(B)/tests/%: $(B)/obj/tests/%.o $(B)/libremodel.a
-	$(call link,$(FAST_LINK) $(if $(filter $(B)/tests/unit/%,$@),-lcmocka))
-$(FUZZ_TESTS): $(B)/obj/tests/fuzz/run_corpus.o
+	$(call link,$(FAST_LINK) $(if $(filter $(B)/tests/unit/%,$@),-lcmocka) $(if $(filter $(B)/tests/fuzz/%,$@),$(if $(filter fuzz,$(FLAVOR)),-fsanitize=fuzzer)))
+$(FAULT_TOOLS): $(B)/obj/tests/faults/trace.o $(B)/obj/tests/faults/tree.o | $(FAULT_TOOLS:%/campaign=%/shim.so)
+$(B)/tests/faults/shim.so: tests/faults/shim.c tests/faults/page.h $(B)/flags
+	$(call say,CC $<)mkdir -p $(@D); $(CC) -std=c11 -D_GNU_SOURCE -O2 -g $(WARN) $(STRICT) -fPIC -shared -I. -o $@ $<
+$(FUZZ_TESTS): $(if $(filter fuzz,$(FLAVOR)),,$(B)/obj/tests/fuzz/run_corpus.o)
 $(BENCHES): $(B)/lib/bench.a
 $(BENCHES): private MORE_LIBS += -lopencv_calib3d -lopencv_imgproc -lopencv_core $(shell $(PKG_CONFIG) --libs OpenEXR 2>/dev/null)
 # a test of stage NAME, below tests/unit/NAME/, has the stage's library; so has every program that includes a header of the stage

@@ -35,9 +35,25 @@
 #include "tests/faults/trace.h"
 #include "tests/faults/tree.h"
 
-enum outcome { RIGHT, SENTENCE, KILLED, LIBRARY, ACCEPTED, WRONG, LOST, HALF, CRASH, HANG, SILENT, VAGUE, RERUN, OUTCOMES };
-static const char *const outcome_names[OUTCOMES] = {"right", "sentence", "killed", "library", "accepted", "wrong", "lost",
-                                                    "half",  "crash",    "hang",   "silent",  "vague",    "rerun"};
+enum outcome {
+    RIGHT,
+    SENTENCE,
+    KILLED,
+    LIBRARY,
+    ACCEPTED,
+    WRONG,
+    LOST,
+    HALF,
+    CRASH,
+    HANG,
+    SILENT,
+    VAGUE,
+    RERUN,
+    OUTCOMES
+};
+static const char *const outcome_names[OUTCOMES] = {"right",  "sentence", "killed", "library", "accepted",
+                                                    "wrong",  "lost",     "half",   "crash",   "hang",
+                                                    "silent", "vague",    "rerun"};
 
 struct kind {
     const char *name;
@@ -94,24 +110,8 @@ static void die(const char *what)
     exit(2);
 }
 
-static bool run(struct trace_result *result, struct trace_fault fault, bool note)
-{
-    struct trace_run r = {.argv = c.argv, .folder = c.folder, .shim = c.shim, .errors = c.errors, .temp = c.temp,
-                          .page = c.page, .page_fd = c.page_fd, .seconds = c.limit, .fault = fault};
-    extern void campaign_opened(void *, const char *);
-
-    if (note) r.opened = campaign_opened;
-    if (!trace_program(result, &r)) exit(3);
-    FILE *f = fopen(c.errors, "rb");
-    const size_t n = f ? fread(said, 1, sizeof said - 1, f) : 0;
-    said[n] = '\0';
-    if (f) fclose(f);
-    return !result->code && !result->signal;
-}
-
 /* The files below the folder that the program opens are its inputs. */
-void campaign_opened(void *data, const char *path);
-void campaign_opened(void *data, const char *path)
+static void note_input(void *data, const char *path)
 {
     const size_t n = strlen(c.folder);
     char whole[8192], real[4096];
@@ -124,7 +124,28 @@ void campaign_opened(void *data, const char *path)
     if (c.opened_count < 4096) c.opened[c.opened_count++] = strdup(real + n + 1);
 }
 
-/* A file ".NAME.XXXXXX.tmp", or one in such a folder. */
+static bool run(struct trace_result *result, struct trace_fault fault, bool note)
+{
+    struct trace_run r = {.argv = c.argv,
+                          .folder = c.folder,
+                          .shim = c.shim,
+                          .errors = c.errors,
+                          .temp = c.temp,
+                          .page = c.page,
+                          .page_fd = c.page_fd,
+                          .seconds = c.limit,
+                          .fault = fault};
+
+    if (note) r.opened = note_input;
+    if (!trace_program(result, &r)) exit(3);
+    FILE *f = fopen(c.errors, "rb");
+    const size_t n = f ? fread(said, 1, sizeof said - 1, f) : 0;
+    said[n] = '\0';
+    if (f) fclose(f);
+    return !result->code && !result->signal;
+}
+
+/* A file ".NAME.XXXXXX.tmp", or one in such a folder, which a program that is killed cannot remove. */
 static bool is_temporary(const char *path)
 {
     for (const char *p = path; *p;) {
@@ -134,6 +155,9 @@ static bool is_temporary(const char *path)
     }
     return false;
 }
+
+/* In a folder NAME.work, which sfm keeps for people to look at when it fails, and empties when it begins. */
+static bool is_workplace(const char *path) { return strstr(path, ".work/") != NULL; }
 
 static bool is_right(const struct tree_file *product)
 {
@@ -221,7 +245,7 @@ static enum outcome judge(const struct trace_result *r, bool killing, const char
         const char *path = now.files[i].path;
         if (tree_find(&c.before, path) || tree_find(&c.made, path)) continue;
         touched = true;
-        if (killing && is_temporary(path)) continue; /* nobody could remove it */
+        if (is_workplace(path) || (killing && is_temporary(path))) continue;
         strange = true;
         snprintf(why, why_size, "%s was left", path);
     }
@@ -229,14 +253,22 @@ static enum outcome judge(const struct trace_result *r, bool killing, const char
         strange = true;
         snprintf(why, why_size, "a file was left in TMPDIR");
     }
-    if (lost) o = LOST;
-    else if (r->hung) o = HANG;
-    else if (r->signal && !(killing && r->signal == SIGKILL)) o = c.page->foreign ? LIBRARY : CRASH;
-    else if (well && (!all || !whole)) o = damaged ? ACCEPTED : WRONG;
-    else if (strange || (!whole && !damaged)) o = c.page->foreign ? LIBRARY : HALF;
-    else if (well) o = RIGHT;
-    else if (killing) o = KILLED;
-    else o = judge_words();
+    if (lost)
+        o = LOST;
+    else if (r->hung)
+        o = HANG;
+    else if (r->signal && !(killing && r->signal == SIGKILL))
+        o = c.page->foreign ? LIBRARY : CRASH;
+    else if (well && (!all || !whole))
+        o = damaged ? ACCEPTED : WRONG;
+    else if (strange || (!whole && !damaged))
+        o = c.page->foreign ? LIBRARY : HALF;
+    else if (well)
+        o = RIGHT;
+    else if (killing)
+        o = KILLED;
+    else
+        o = judge_words();
     if ((o == SILENT || o == VAGUE) && c.page->foreign) o = LIBRARY;
     if ((o == SENTENCE || o == KILLED || o == SILENT || o == VAGUE || o == LIBRARY) && touched && !damaged) {
         struct trace_result again;
@@ -277,8 +309,8 @@ static void tally(const char *kind, const char *where, enum outcome o, const cha
     snprintf(line, sizeof line, "%s", tail);
     for (char *p = line; *p; p++)
         if (*p == '\n') *p = error ? '\0' : '|';
-    fprintf(f, "%s\t%s\t%s\t%s\t%s\texit %d signal %d\t%s\t%s\t%s\n", outcome_names[o], c.stage, kind, where, c.label, r->code, r->signal,
-            why, c.page->library, line);
+    fprintf(f, "%s\t%s\t%s\t%s\t%s\texit %d signal %d\t%s\t%s\t%s\n", outcome_names[o], c.stage, kind, where, c.label,
+            r->code, r->signal, why, c.page->library, line);
     fclose(f);
 }
 
@@ -291,8 +323,15 @@ static void inject(const struct kind *k, long count, int each)
         const long at = k->sticky && i == 0 ? 1 : 1 + (long)((double)count * ((double)i + 0.5) / (double)n);
         struct trace_result r;
         memset(c.page, 0, sizeof *c.page);
-        run(&r, (struct trace_fault){.call = k->call, .at = at, .error = k->error, .shorter = k->shorter, .kill = k->kill,
-                                     .sticky = k->sticky, .temporary = k->temporary}, false);
+        run(&r,
+            (struct trace_fault){.call = k->call,
+                                 .at = at,
+                                 .error = k->error,
+                                 .shorter = k->shorter,
+                                 .kill = k->kill,
+                                 .sticky = k->sticky,
+                                 .temporary = k->temporary},
+            false);
         snprintf(where, sizeof where, "%ld of %ld", at, count);
         const enum outcome o = judge(&r, k->kill, NULL, why, sizeof why);
         if (r.happened) tally(k->name, where, o, why, &r);
@@ -362,7 +401,8 @@ static void run_twice(void)
             said[f ? fread(said, 1, sizeof said - 1, f) : 0] = '\0';
             if (f) fclose(f);
         }
-        tally("two-at-once", gap ? "one after the other" : "together", judge(&r, false, NULL, why, sizeof why), why, &r);
+        tally("two-at-once", gap ? "one after the other" : "together", judge(&r, false, NULL, why, sizeof why), why,
+              &r);
         for (int i = 0; i < 2; i++) unlink(errors[i]);
     }
 }
@@ -373,7 +413,7 @@ static void damage_one(const char *kind, const char *path, const char *bytes, si
     struct trace_result r;
 
     snprintf(whole, sizeof whole, "%s/%s", c.folder, path);
-    snprintf(aside, sizeof aside, "%s.aside", whole);
+    snprintf(aside, sizeof aside, "%s.aside", c.folder); /* beside all that a program may list */
     if (rename(whole, aside)) die("an input cannot be put aside");
     if (bytes && !tree_write(c.folder, path, bytes, size)) die("an input cannot be written");
     memset(c.page, 0, sizeof *c.page);
@@ -392,8 +432,10 @@ static const char *another(const char *path)
     if (!dot) return NULL;
     const size_t start = strlen(path) % (c.before.count ? c.before.count : 1);
     for (; n < c.before.count; n++) {
-        const char *p = c.before.files[(start + n * 7919) % c.before.count].path, *d = strrchr(p, '.'), *s = strrchr(p, '/');
-        if (d && !strcmp(d, dot) && s && slash && (s - p != slash - path || strncmp(p, path, (size_t)(s - p)))) return p;
+        const char *p = c.before.files[(start + n * 7919) % c.before.count].path, *d = strrchr(p, '.'),
+                   *s = strrchr(p, '/');
+        if (d && !strcmp(d, dot) && s && slash && (s - p != slash - path || strncmp(p, path, (size_t)(s - p))))
+            return p;
     }
     return NULL;
 }
@@ -529,17 +571,27 @@ int main(int argc, char **argv)
     int each = 6, inputs = 8;
 
     for (int i = 1; i + 1 < argc; i += 2) {
-        if (!strcmp(argv[i], "--folder")) folder = argv[i + 1];
-        else if (!strcmp(argv[i], "--command")) command = argv[i + 1];
-        else if (!strcmp(argv[i], "--shim")) c.shim = argv[i + 1];
-        else if (!strcmp(argv[i], "--results")) c.results = argv[i + 1];
-        else if (!strcmp(argv[i], "--details")) c.details = argv[i + 1];
-        else if (!strcmp(argv[i], "--temp")) temp = argv[i + 1];
-        else if (!strcmp(argv[i], "--each")) each = atoi(argv[i + 1]);
-        else if (!strcmp(argv[i], "--inputs")) inputs = atoi(argv[i + 1]);
-        else die(argv[i]);
+        if (!strcmp(argv[i], "--folder"))
+            folder = argv[i + 1];
+        else if (!strcmp(argv[i], "--command"))
+            command = argv[i + 1];
+        else if (!strcmp(argv[i], "--shim"))
+            c.shim = argv[i + 1];
+        else if (!strcmp(argv[i], "--results"))
+            c.results = argv[i + 1];
+        else if (!strcmp(argv[i], "--details"))
+            c.details = argv[i + 1];
+        else if (!strcmp(argv[i], "--temp"))
+            temp = argv[i + 1];
+        else if (!strcmp(argv[i], "--each"))
+            each = atoi(argv[i + 1]);
+        else if (!strcmp(argv[i], "--inputs"))
+            inputs = atoi(argv[i + 1]);
+        else
+            die(argv[i]);
     }
-    if (!folder || !command || !c.shim || !c.results || !c.details || !temp || !realpath(folder, real) || !realpath(c.shim, shim))
+    if (!folder || !command || !c.shim || !c.results || !c.details || !temp || !realpath(folder, real) ||
+        !realpath(c.shim, shim))
         die("wanted --folder --command --shim --results --details --temp");
     c.folder = real;
     c.shim = shim;

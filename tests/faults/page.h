@@ -9,14 +9,14 @@
 #define FAULT_MARK 0x46415554 /* the first argument of a prctl() that tells the tracer: main() begins */
 
 struct fault_page {
-    pid_t pid;              /* the process that is meant; others, which it starts, are left alone */
-    atomic_long mallocs;    /* allocations since main() began */
-    long malloc_at;         /* which of them fails, from 1; 0: none */
-    int malloc_sticky;      /* all after it fail as well */
-    atomic_int foreign;     /* a failing allocation was asked for by a library that is not ours */
-    char library[128];      /* its file */
-    atomic_long clocks;     /* readings of a clock since main() began */
-    long clock_at;          /* from which one each clock goes back, an hour with each reading; 0: none */
+    pid_t pid;           /* the process that is meant; others, which it starts, are left alone */
+    atomic_long mallocs; /* allocations since main() began */
+    long malloc_at;      /* which of them fails, from 1; 0: none */
+    int malloc_sticky;   /* all after it fail as well */
+    atomic_int foreign;  /* a failing allocation was asked for by a library that is not ours */
+    char library[128];   /* its file */
+    atomic_long clocks;  /* readings of a clock since main() began */
+    long clock_at;       /* from which one each clock goes back, an hour with each reading; 0: none */
 };
 
 #endif

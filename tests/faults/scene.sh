@@ -1,7 +1,9 @@
-# scene.sh - two scenes as small as they can be that together run every stage; sourced after tests/lib.sh, in a project folder.
+# scene.sh - scenes as small as they can be that together run every stage, and the campaign of faults over their
+# programs. Sourced after tests/lib.sh, in a project folder.
 #
 # t: synthetic photos of a modelled room with edits, furniture, lamps, marks, light levels, films and pages.
 # room: a described scene in two exposures, with a reference image.
+# found: four photos whose cameras COLMAP finds.
 
 faults_describe()
 {
@@ -51,7 +53,8 @@ renderer = fast
 preset = ultrafast
 CFG
     mkdir -p scenes/t/objects scenes/t/keyframes
-    printf 'v 0 0 0\nv 8 0 0\nv 8 8 0\nv 0 8 0\nv 4 4 8\nf 4 3 2 1\nf 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n' >scenes/t/objects/tent.obj
+    printf '%s\n' 'v 0 0 0' 'v 8 0 0' 'v 8 8 0' 'v 0 8 0' 'v 4 4 8' 'f 4 3 2 1' 'f 1 2 5' 'f 2 3 5' 'f 3 4 5' 'f 4 1 5' \
+        >scenes/t/objects/tent.obj
     cat >scenes/t/edits/dark.txt <<'END'
 remodel-script 1
 # A dark floor, a chest, a tent and a lamp.
@@ -64,7 +67,7 @@ lamp hung ies new.ies at 0 8 16 colour 1 0.9 0.8
 clear hall
 END
     printf 'remodel-places 1\nplace desk at 0 8 size 2 1\n' >scenes/t/places.txt
-    printf 'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 90\n0\n1000 1000\n' >scenes/t/new.ies
+    printf '%s\n' IESNA:LM-63-2002 TILT=NONE '1 -1 1 2 1 1 2 0 0 0' '1 1 0' '0 90' 0 '1000 1000' >scenes/t/new.ies
     cat >scenes/t/states.txt <<'END'
 remodel-states 1
 site 52.5 13.4 1
@@ -103,7 +106,8 @@ photo c p 1.4 1 1.5  3 2 1.2
 reference r f 2 1 1  0 1 1
 END
     printf '[simulate]\nsamples = 4\nirradiance_samples = 64\n' >scenes/room/scene.cfg
-    printf 'PHOTOS := out/room/simulated/photos\nLRI := out/room/simulated/lri\nLRI_SFM := out/room/simulated/truth/lri\nLRI_FRAME := scene\n' >scenes/room/scene.mk
+    printf '%s\n' 'PHOTOS := out/room/simulated/photos' 'LRI := out/room/simulated/lri' \
+        'LRI_SFM := out/room/simulated/truth/lri' 'LRI_FRAME := scene' >scenes/room/scene.mk
 
     photos textured --views 4 --size 240x180 >/dev/null
 }
@@ -114,13 +118,14 @@ faults_goal()
     local scene=$1; shift
     make -s DEPS=manual CORES=1 SCENE="$scene" "$@" >log 2>&1 || { tail -n 20 log; fail "make $*"; }
 }
-# faults_make: both scenes, and one whose cameras COLMAP finds
+# faults_make: all three
 faults_make()
 {
-    local goal given=(PHOTOS=set/photos SFM=set/model 'LUX_PHOTOS=photo_1 photo_2' RELIT_VIEWS=photo_2 GATHER_POINTS=points.txt)
+    local goal given=(PHOTOS=set/photos SFM=set/model 'LUX_PHOTOS=photo_1 photo_2' RELIT_VIEWS=photo_2)
+    given+=(GATHER_POINTS=points.txt)
     for goal in all 'lux EDIT=dark' 'relight EDIT=dark' 'tour EDIT=dark' 'relit-tour EDIT=dark' walk exports draw suggest \
-        'EFFECT=establishing_dolly video' 'EFFECT=across video' pan_scan subjects luminance lights 'irradiance GATHER_VIEWS=photo_2' \
-        materials evaluate things; do
+        'EFFECT=establishing_dolly video' 'EFFECT=across video' pan_scan subjects luminance lights \
+        'irradiance GATHER_VIEWS=photo_2' materials evaluate things; do
         # shellcheck disable=SC2086 # words
         faults_goal t "${given[@]}" $goal
     done
@@ -129,3 +134,64 @@ faults_make()
     faults_goal found PHOTOS=textured/photos doctor
     faults_goal found PHOTOS=textured/photos sfm
 }
+
+# faults_record COMMAND...: runs it; each program that it starts leaves its command line in the folder `recorded`
+faults_record()
+{
+    mkdir -p recorded
+    FAULT_RECORD=$PWD/recorded LD_PRELOAD=$root/$B/tests/faults/shim.so "$@"
+}
+# faults_commands: of the recorded commands, one of each program and each set of options, one file a line
+faults_commands()
+{
+    local f
+    for f in recorded/*; do
+        # the folder, the program, then its arguments
+        tr '\0' '\n' <"$f" | awk -v file="$f" 'NR == 2 { n = split($0, part, "/"); key = part[n] }
+            NR > 2 && /^--/ && !seen[$0]++ && $0 != "--config" { key = key " " $0 }
+            END { if (key !~ / --print-config/ && key !~ /^print_graph/) print key "\t" file }'
+    done | sort -t "$(printf '\t')" -k1,1 -u | cut -f2
+}
+# faults_inject EACH INPUTS: of each command, EACH moments of each kind of fault, and INPUTS damaged files. Each begins with the
+# same files. Results go to results.tsv and details.tsv
+faults_inject()
+{
+    local f
+    faults_commands >commands
+    : >results.tsv; : >details.tsv
+    cp -a "$PWD" "$scratch/kept"
+    while read -r f; do
+        rm -rf "$scratch/work" "$scratch/temp"; cp -a "$scratch/kept" "$scratch/work"; mkdir "$scratch/temp"
+        "$root/$B/tests/faults/campaign" --folder "$scratch/work" --command "$f" --shim "$root/$B/tests/faults/shim.so" \
+            --results results.tsv --details details.tsv --temp "$scratch/temp" --each "$1" --inputs "$2" </dev/null 2>log ||
+            { cat log; fail "$f: the campaign ended"; }
+    done <commands
+    awk -F '\t' -v OFS='\t' 'BEGIN { print "stage", "fault", "right", "sentence", "killed", "library", "accepted", "wrong",
+            "lost", "half", "crash", "hang", "silent", "vague", "rerun" }
+        { key = $1 OFS $2; if (!(key in known)) { known[key] = 1; order[++n] = key }
+            for (i = 3; i <= NF; i++) { sum[key, i] += $i; all[i] += $i } last = NF }
+        END { order[++n] = "all" OFS "all"; for (i = 3; i <= last; i++) sum[order[n], i] = all[i]
+            for (k = 1; k <= n; k++) { line = order[k]; for (i = 3; i <= last; i++) line = line OFS sum[order[k], i]; print line } }' \
+        results.tsv >table.tsv
+}
+# faults_count COLUMN: how many injections ended so
+faults_count()
+{
+    awk -F '\t' -v name="$1" 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == name) at = i } END { print $at }' table.tsv
+}
+# faults_none COLUMN: fails with the details of these
+faults_none()
+{
+    [ "$(faults_count "$1")" = 0 ] || { grep "^$1" details.tsv | cut -c1-400; fail "$(faults_count "$1") injections"; }
+}
+
+every_result_is_right_or_is_an_error() { faults_none wrong; }
+nothing_else_is_changed() { faults_none lost; }
+no_half_product_is_left() { faults_none half; }
+no_program_crashes() { faults_none crash; }
+no_program_hangs() { faults_none hang; }
+every_failure_has_a_sentence() { faults_none silent; }
+every_sentence_names_a_file_or_memory() { faults_none vague; }
+a_run_afterwards_gives_the_right_bytes() { faults_none rerun; }
+FAULT_TESTS='every_result_is_right_or_is_an_error nothing_else_is_changed no_half_product_is_left no_program_crashes
+    no_program_hangs every_failure_has_a_sentence every_sentence_names_a_file_or_memory a_run_afterwards_gives_the_right_bytes'

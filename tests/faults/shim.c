@@ -21,10 +21,13 @@
 
 #include "tests/faults/page.h"
 
-void *__libc_malloc(size_t);
-void *__libc_calloc(size_t, size_t);
-void *__libc_realloc(void *, size_t);
-void *__libc_memalign(size_t, size_t);
+/* the C library's own, and the function that it calls main() with, which this file replaces */
+void *own_malloc(size_t size) __asm__("__libc_malloc");
+void *own_calloc(size_t n, size_t size) __asm__("__libc_calloc");
+void *own_realloc(void *old, size_t size) __asm__("__libc_realloc");
+void *own_memalign(size_t align, size_t size) __asm__("__libc_memalign");
+int shim_start(int (*program)(int, char **, char **), int argc, char **argv, void (*init)(void), void (*fini)(void),
+               void (*rtld_fini)(void), void *stack_end) __asm__("__libc_start_main");
 
 static struct fault_page *page;
 static int (*real_main)(int, char **, char **);
@@ -34,7 +37,8 @@ static _Thread_local bool inside;
 /* Notes which file asked for the allocation: the first on the stack that is not a part of the languages' own libraries. */
 static void note_owner(void)
 {
-    static const char *const own[] = {"/libc.so", "/libc-", "/libstdc++", "/libgcc_s", "/libm.so", "/ld-linux", "shim.so"};
+    static const char *const own[] = {"/libc.so", "/libc-",    "/libstdc++", "/libgcc_s",
+                                      "/libm.so", "/ld-linux", "shim.so"};
     void *frames[48];
     const int n = backtrace(frames, 48);
 
@@ -62,16 +66,16 @@ static bool refused(void)
     return true;
 }
 
-void *malloc(size_t size) { return refused() ? NULL : __libc_malloc(size); }
-void *calloc(size_t n, size_t size) { return refused() ? NULL : __libc_calloc(n, size); }
-void *realloc(void *old, size_t size) { return size && refused() ? NULL : __libc_realloc(old, size); }
-void *memalign(size_t align, size_t size) { return refused() ? NULL : __libc_memalign(align, size); }
-void *aligned_alloc(size_t align, size_t size) { return refused() ? NULL : __libc_memalign(align, size); }
+void *malloc(size_t size) { return refused() ? NULL : own_malloc(size); }
+void *calloc(size_t n, size_t size) { return refused() ? NULL : own_calloc(n, size); }
+void *realloc(void *old, size_t size) { return size && refused() ? NULL : own_realloc(old, size); }
+void *memalign(size_t align, size_t size) { return refused() ? NULL : own_memalign(align, size); }
+void *aligned_alloc(size_t align, size_t size) { return refused() ? NULL : own_memalign(align, size); }
 
 int posix_memalign(void **out, size_t align, size_t size)
 {
     const int saved = errno;
-    void *p = refused() ? NULL : __libc_memalign(align, size);
+    void *p = refused() ? NULL : own_memalign(align, size);
 
     errno = saved;
     if (!p) return ENOMEM;
@@ -121,7 +125,8 @@ static void record(const char *folder, char **argv)
     if (n <= 0 || !getcwd(cwd, sizeof cwd)) return;
     exe[n] = '\0';
     char *slash = strrchr(exe, '/');
-    if (!slash || slash - exe < 4 || strncmp(slash - 4, "/bin", 4) || !strncmp(exe, "/usr/", 5) || !strncmp(exe, "/bin/", 5))
+    if (!slash || slash - exe < 4 || strncmp(slash - 4, "/bin", 4) || !strncmp(exe, "/usr/", 5) ||
+        !strncmp(exe, "/bin/", 5))
         return;
     snprintf(path, sizeof path, "%s/%s.%ld", folder, slash + 1, (long)getpid());
     FILE *f = fopen(path, "wb");
@@ -150,12 +155,12 @@ static int begin(int argc, char **argv, char **env)
     return real_main(argc, argv, env);
 }
 
-int __libc_start_main(int (*main)(int, char **, char **), int argc, char **argv, void (*init)(void), void (*fini)(void),
-                      void (*rtld_fini)(void), void *stack_end)
+int shim_start(int (*program)(int, char **, char **), int argc, char **argv, void (*init)(void), void (*fini)(void),
+               void (*rtld_fini)(void), void *stack_end)
 {
     int (*next)(int (*)(int, char **, char **), int, char **, void (*)(void), void (*)(void), void (*)(void), void *);
 
     *(void **)&next = dlsym(RTLD_NEXT, "__libc_start_main");
-    real_main = main;
+    real_main = program;
     return next(begin, argc, argv, init, fini, rtld_fini, stack_end);
 }

@@ -20,8 +20,8 @@
 #include <time.h>
 #include <unistd.h>
 
-const char *const trace_call_names[CALL_COUNT] = {"none", "open",  "create", "read",   "write", "close",
-                                                  "stat", "list",  "rename", "fsync",  "mkdir"};
+const char *const trace_call_names[CALL_COUNT] = {"none", "open", "create", "read",  "write", "close",
+                                                  "stat", "list", "rename", "fsync", "mkdir"};
 
 enum { THREADS = 4096 };
 
@@ -39,13 +39,13 @@ static const struct {
     long number;
     enum trace_call call;
 } calls[] = {
-    {SYS_open, CALL_OPEN},       {SYS_openat, CALL_OPEN},       {SYS_creat, CALL_CREATE},    {SYS_read, CALL_READ},
-    {SYS_pread64, CALL_READ},    {SYS_readv, CALL_READ},        {SYS_write, CALL_WRITE},     {SYS_pwrite64, CALL_WRITE},
-    {SYS_writev, CALL_WRITE},    {SYS_close, CALL_CLOSE},       {SYS_stat, CALL_STAT},       {SYS_lstat, CALL_STAT},
-    {SYS_newfstatat, CALL_STAT}, {SYS_statx, CALL_STAT},        {SYS_access, CALL_STAT},     {SYS_faccessat, CALL_STAT},
-    {SYS_faccessat2, CALL_STAT}, {SYS_getdents64, CALL_LIST},   {SYS_rename, CALL_RENAME},   {SYS_renameat, CALL_RENAME},
-    {SYS_renameat2, CALL_RENAME}, {SYS_link, CALL_RENAME},      {SYS_fsync, CALL_FSYNC},     {SYS_fdatasync, CALL_FSYNC},
-    {SYS_mkdir, CALL_MKDIR},     {SYS_mkdirat, CALL_MKDIR},     {SYS_prctl, CALL_NONE},
+    {SYS_open, CALL_OPEN},        {SYS_openat, CALL_OPEN},     {SYS_creat, CALL_CREATE},  {SYS_read, CALL_READ},
+    {SYS_pread64, CALL_READ},     {SYS_readv, CALL_READ},      {SYS_write, CALL_WRITE},   {SYS_pwrite64, CALL_WRITE},
+    {SYS_writev, CALL_WRITE},     {SYS_close, CALL_CLOSE},     {SYS_stat, CALL_STAT},     {SYS_lstat, CALL_STAT},
+    {SYS_newfstatat, CALL_STAT},  {SYS_statx, CALL_STAT},      {SYS_access, CALL_STAT},   {SYS_faccessat, CALL_STAT},
+    {SYS_faccessat2, CALL_STAT},  {SYS_getdents64, CALL_LIST}, {SYS_rename, CALL_RENAME}, {SYS_renameat, CALL_RENAME},
+    {SYS_renameat2, CALL_RENAME}, {SYS_link, CALL_RENAME},     {SYS_fsync, CALL_FSYNC},   {SYS_fdatasync, CALL_FSYNC},
+    {SYS_mkdir, CALL_MKDIR},      {SYS_mkdirat, CALL_MKDIR},   {SYS_prctl, CALL_NONE},
 };
 enum { CALLS = sizeof calls / sizeof *calls };
 
@@ -70,13 +70,16 @@ static void run_child(const struct trace_run *run)
     char fd[32];
     const int out = open("/dev/null", O_RDWR), err = open(run->errors, O_WRONLY | O_CREAT | O_TRUNC, 0666);
     const struct rlimit none = {0, 0}, memory = {6UL << 30, 6UL << 30};
+    const struct rlimit time = {(rlim_t)run->seconds, (rlim_t)run->seconds + 1};
 
-    if (out < 0 || err < 0 || dup2(out, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0 || chdir(run->folder)) _exit(125);
+    if (out < 0 || err < 0 || dup2(out, 0) < 0 || dup2(out, 1) < 0 || dup2(err, 2) < 0 || chdir(run->folder))
+        _exit(125);
     if (out > 2) close(out);
     if (err > 2) close(err);
     setpgid(0, 0);
     setrlimit(RLIMIT_CORE, &none);
     setrlimit(RLIMIT_AS, &memory);
+    setrlimit(RLIMIT_CPU, &time);
     snprintf(fd, sizeof fd, "%d", run->page_fd);
     setenv("FAULT_PAGE", fd, 1);
     setenv("LD_PRELOAD", run->shim, 1);
@@ -125,8 +128,9 @@ static bool path_of_fd(pid_t pid, long fd, char *path, size_t size)
 
 static bool of_interest(const char *path)
 {
-    static const char *const others[] = {"/proc/", "/sys/", "/dev/", "/etc/", "/usr/lib/", "/lib/", "/lib64/", "/run/",
-                                         "/usr/share/locale", "/memfd:", "anon_inode", "socket:"};
+    static const char *const others[] = {
+        "/proc/",  "/sys/",      "/dev/",  "/etc/", "/usr/lib/", "/lib/", "/lib64/", "/run/", "/usr/share/locale",
+        "/memfd:", "anon_inode", "socket:"};
 
     if (!*path) return false;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -144,13 +148,35 @@ static enum trace_call classify(pid_t pid, const struct user_regs_struct *r, cha
     *path = '\0';
     unsigned long name = 0;
     switch (r->orig_rax) {
-    case SYS_open: name = r->rdi; call = r->rsi & (O_WRONLY | O_RDWR) ? CALL_CREATE : CALL_OPEN; break;
-    case SYS_openat: name = r->rsi; call = r->rdx & (O_WRONLY | O_RDWR) ? CALL_CREATE : CALL_OPEN; break;
-    case SYS_creat: case SYS_stat: case SYS_lstat: case SYS_access: case SYS_rename: case SYS_link: case SYS_mkdir: name = r->rdi; break;
-    case SYS_newfstatat: case SYS_statx: case SYS_faccessat: case SYS_faccessat2: case SYS_renameat: case SYS_renameat2:
-    case SYS_mkdirat: name = r->rsi; break;
+    case SYS_open:
+        name = r->rdi;
+        call = r->rsi & (O_WRONLY | O_RDWR) ? CALL_CREATE : CALL_OPEN;
+        break;
+    case SYS_openat:
+        name = r->rsi;
+        call = r->rdx & (O_WRONLY | O_RDWR) ? CALL_CREATE : CALL_OPEN;
+        break;
+    case SYS_creat:
+    case SYS_stat:
+    case SYS_lstat:
+    case SYS_access:
+    case SYS_rename:
+    case SYS_link:
+    case SYS_mkdir:
+        name = r->rdi;
+        break;
+    case SYS_newfstatat:
+    case SYS_statx:
+    case SYS_faccessat:
+    case SYS_faccessat2:
+    case SYS_renameat:
+    case SYS_renameat2:
+    case SYS_mkdirat:
+        name = r->rsi;
+        break;
     default:
-        if (!call || (long)r->rdi < 3 || !path_of_fd(pid, (long)r->rdi, path, size) || !of_interest(path)) return CALL_NONE;
+        if (!call || (long)r->rdi < 3 || !path_of_fd(pid, (long)r->rdi, path, size) || !of_interest(path))
+            return CALL_NONE;
         return call;
     }
     if (!name || !read_text(pid, name, path, size)) return CALL_NONE;
@@ -209,7 +235,8 @@ static void at_stop(struct tracer *t, pid_t pid, int status)
     unsigned long made = 0;
     int pass = 0;
 
-    if (event == PTRACE_EVENT_SECCOMP) at_call(t, pid);
+    if (event == PTRACE_EVENT_SECCOMP)
+        at_call(t, pid);
     else if (event == PTRACE_EVENT_CLONE) {
         ptrace(PTRACE_GETEVENTMSG, pid, 0, &made);
         if (is_ours(t, pid) && t->count < THREADS) {
@@ -218,7 +245,8 @@ static void at_stop(struct tracer *t, pid_t pid, int status)
             snprintf(task, sizeof task, "/proc/%ld/task/%lu", (long)t->main, made);
             if (!access(task, F_OK)) t->threads[t->count++] = (pid_t)made;
         }
-    } else if (!event && sig != SIGSTOP && sig != SIGTRAP) pass = sig;
+    } else if (!event && sig != SIGSTOP && sig != SIGTRAP)
+        pass = sig;
     ptrace(PTRACE_CONT, pid, 0, pass);
 }
 
@@ -245,7 +273,7 @@ bool trace_program(struct trace_result *result, const struct trace_run *run)
     ptrace(PTRACE_CONT, pid, 0, 0);
     const struct sigaction action = {.sa_handler = on_alarm}; /* interrupts waitpid() */
     sigaction(SIGALRM, &action, NULL);
-    alarm((unsigned)run->seconds);
+    alarm(15 * (unsigned)run->seconds); /* the machine may have other work */
     for (bool over = false;;) {
         const pid_t who = waitpid(-1, &status, __WALL);
         if (who < 0 && errno == EINTR) {
@@ -255,11 +283,13 @@ bool trace_program(struct trace_result *result, const struct trace_run *run)
             continue;
         }
         if (who < 0) break; /* no child is left */
-        if (WIFSTOPPED(status)) at_stop(t, who, status);
+        if (WIFSTOPPED(status))
+            at_stop(t, who, status);
         else if (who == pid) {
             over = true;
             result->code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
             result->signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
+            result->hung = result->hung || result->signal == SIGXCPU;
         }
         if (over && kill(-pid, 0)) break;
     }

@@ -29,23 +29,23 @@ enum trace_call {
 /* What happens at a call. */
 struct trace_fault {
     enum trace_call call;
-    long at;     /* which of them, from 1 */
-    int error;   /* errno that it returns */
-    bool shorter; /* or: a read or write of half the bytes */
-    bool kill;   /* or: the program is killed */
-    bool sticky; /* all after it fail as well */
+    long at;        /* which of them, from 1 */
+    int error;      /* errno that it returns */
+    bool shorter;   /* or: a read or write of half the bytes */
+    bool kill;      /* or: the program is killed */
+    bool sticky;    /* all after it fail as well */
     bool temporary; /* only calls on files below the folder for temporary files count */
 };
 
 struct trace_run {
     char *const *argv;
-    const char *folder;     /* to run it in */
-    const char *shim;       /* the library that is loaded before all others */
-    const char *errors;     /* file that standard error goes to */
-    const char *temp;       /* folder for temporary files */
+    const char *folder;      /* to run it in */
+    const char *shim;        /* the library that is loaded before all others */
+    const char *errors;      /* file that standard error goes to */
+    const char *temp;        /* folder for temporary files */
     struct fault_page *page; /* shared; fd is its file descriptor */
     int page_fd;
-    int seconds; /* after which it is killed */
+    int seconds; /* of computing, after which it is killed, or 15 times as long by the clock */
     struct trace_fault fault;
     /* called for each file that is opened for reading, if not NULL */
     void (*opened)(void *data, const char *path);
@@ -54,10 +54,10 @@ struct trace_run {
 
 struct trace_result {
     long counts[CALL_COUNT];
-    int code;       /* exit code, or -1 */
-    int signal;     /* that ended it, or 0 */
-    bool hung;      /* it was killed after the time was over */
-    bool happened;  /* the fault */
+    int code;      /* exit code, or -1 */
+    int signal;    /* that ended it, or 0 */
+    bool hung;     /* it was killed after the time was over */
+    bool happened; /* the fault */
     double seconds;
 };
 

@@ -77,7 +77,8 @@ char *tree_bytes(const char *folder, const char *path, size_t *size)
     snprintf(name, sizeof name, "%s/%s", folder, path);
     FILE *f = fopen(name, "rb");
     if (!f) return NULL;
-    if (!fstat(fileno(f), &info) && (bytes = malloc((size_t)info.st_size + 1))) *size = fread(bytes, 1, (size_t)info.st_size, f);
+    if (!fstat(fileno(f), &info) && (bytes = malloc((size_t)info.st_size + 1)))
+        *size = fread(bytes, 1, (size_t)info.st_size, f);
     fclose(f);
     return bytes;
 }

@@ -30,7 +30,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     if (light_record_read(&record, path, &record_err)) {
         if (!strstr(record_err.text, path)) abort();
     } else {
-        if (record.points < 0 || record.dark < 0 || record.dark > record.points || record.example_count > LIGHT_EXAMPLES_MAX)
+        if (record.points < 0 || record.dark < 0 || record.dark > record.points ||
+            record.example_count > LIGHT_EXAMPLES_MAX)
             abort();
         for (int i = 0; i < LIGHT_SOURCES; i++)
             if (!(record.from[i] >= 0 && record.from[i] <= 1)) abort();

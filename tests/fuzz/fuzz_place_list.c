@@ -22,7 +22,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
             const struct light_place_mark *p = &list.items[i];
             if (!p->name || !*p->name || p->line < 1 || !isfinite(p->height)) abort();
             for (int k = 0; k < 2; k++)
-                if (!isfinite(p->photo ? p->pixel[k] : p->at[k]) || !(p->size[k] >= 0) || !isfinite(p->size[k])) abort();
+                if (!isfinite(p->photo ? p->pixel[k] : p->at[k]) || !(p->size[k] >= 0) || !isfinite(p->size[k]))
+                    abort();
             for (int k = 0; k < i; k++)
                 if (!strcmp(list.items[k].name, p->name)) abort();
         }

@@ -51,7 +51,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
         check(&list);
         state_list_release(&list);
     }
-    if (!level_date_read(&date, words, &date_err) && (date.month < 1 || date.month > 12 || date.day < 1 || date.day > 31))
+    if (!level_date_read(&date, words, &date_err) &&
+        (date.month < 1 || date.month > 12 || date.day < 1 || date.day > 31))
         abort();
     free(words);
     unlink(path);

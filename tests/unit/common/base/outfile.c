@@ -243,13 +243,13 @@ static int left_behind(const char *folder, int sig, int *code)
 
 static void exits_and_signals_remove_temporary_files(void **state)
 {
-    static const int polite[] = {SIGINT, SIGTERM, SIGHUP};
+    static const int polite[] = {SIGINT, SIGTERM, SIGHUP, SIGABRT};
     int code;
 
     (void)state;
     assert_int_equal(left_behind("exit", 0, &code), 0);
     assert_int_equal(code, 3);
-    for (size_t i = 0; i < 3; i++) {
+    for (size_t i = 0; i < sizeof polite / sizeof *polite; i++) {
         char folder[32];
         snprintf(folder, sizeof folder, "signal%d", polite[i]);
         assert_int_equal(left_behind(folder, polite[i], &code), 0);
