@@ -87,8 +87,8 @@ enum status place_list_read(struct place_list *l, const char *path, struct prove
     int64_t version;
     *l = (struct place_list){.path = strdup(path)};
     if (!l->path) return err_nomem(err, "a path", strlen(path));
-    if (provenance_open(prov, "places.txt", &t, path, err)) return err->status;
-    if (!textfile_expect_line(&t, "remodel-places", err) && !textfile_int(&t, "version", 1, 1, &version, err))
+    if (!provenance_open(prov, "places.txt", &t, path, err) && !textfile_expect_line(&t, "remodel-places", err) &&
+        !textfile_int(&t, "version", 1, 1, &version, err))
         textfile_end(&t, err);
     while (!err->status && textfile_next(&t))
         if (!textfile_expect(&t, "place", err)) read_place(l, &t, err);
