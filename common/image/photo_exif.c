@@ -92,6 +92,25 @@ enum status photo_exif_read(struct photo_info *info, const struct photo_bytes *f
                                                                        : ST_OK;
 }
 
+/* libexif leaves out what it has no memory for, and says nothing. This notes it. */
+static _Thread_local bool starved;
+static void *noted(void *p)
+{
+    if (!p) starved = true;
+    return p;
+}
+static void *exif_take(ExifLong size) { return noted(calloc(1, size ? size : 1)); }
+static void *exif_resize(void *old, ExifLong size) { return noted(realloc(old, size ? size : 1)); }
+
+static ExifData *exif_new(void)
+{
+    starved = false;
+    ExifMem *mem = exif_mem_new(exif_take, exif_resize, free);
+    ExifData *data = mem ? exif_data_new_mem(mem) : NULL;
+    if (mem) exif_mem_unref(mem);
+    return data;
+}
+
 enum status photo_exif_take(struct photo_info *info, const unsigned char *block, size_t size, struct err *err)
 {
     info->orientation = 1;
@@ -101,7 +120,7 @@ enum status photo_exif_take(struct photo_info *info, const unsigned char *block,
     }
     if (size > PHOTO_MAX_EXIF) return ST_OK;
     unsigned char *marked = malloc(sizeof exif_mark + size);
-    ExifData *data = exif_data_new();
+    ExifData *data = exif_new();
     if (!marked || !data) {
         err_nomem(err, "EXIF data", size);
     } else {
@@ -124,6 +143,7 @@ enum status photo_exif_take(struct photo_info *info, const unsigned char *block,
         exif_text(data, EXIF_IFD_EXIF, EXIF_TAG_SUB_SEC_TIME_ORIGINAL, subseconds, sizeof subseconds);
         info->taken = photo_time(date, subseconds);
         info->adobe_rgb = exif_is_adobe(data);
+        if (starved) err_nomem(err, "EXIF data", size);
     }
     if (data) exif_data_unref(data);
     free(marked);
@@ -202,7 +222,7 @@ static bool exif_put_rational(ExifData *data, ExifTag tag, double value)
 
 enum status photo_exif_block(unsigned char **block, unsigned *size, const struct photo_info *info, struct err *err)
 {
-    ExifData *data = exif_data_new();
+    ExifData *data = exif_new();
     bool made = data;
     *block = NULL;
     if (made) {
@@ -219,5 +239,5 @@ enum status photo_exif_block(unsigned char **block, unsigned *size, const struct
     }
     if (made) exif_data_save_data(data, block, size);
     if (data) exif_data_unref(data);
-    return *block && *size <= 65533 ? ST_OK : err_nomem(err, "EXIF data", 65533);
+    return !starved && *block && *size <= 65533 ? ST_OK : err_nomem(err, "EXIF data", 65533);
 }
