@@ -1,6 +1,7 @@
 /* file_path.c - paths of files. */
 #include "common/base/file_path.h"
 
+#include <errno.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -18,14 +19,13 @@ const char *path_file_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-bool path_is_file(const char *path)
+/* What stat() cannot look at for another reason than that it is missing counts as there: who opens it is told why. */
+static bool is_there(const char *path, mode_t kind)
 {
     struct stat info;
-    return !stat(path, &info) && S_ISREG(info.st_mode);
+    if (!stat(path, &info)) return (info.st_mode & S_IFMT) == kind;
+    return errno != ENOENT && errno != ENOTDIR && errno != ENAMETOOLONG && errno != ELOOP;
 }
 
-bool path_is_folder(const char *path)
-{
-    struct stat info;
-    return !stat(path, &info) && S_ISDIR(info.st_mode);
-}
+bool path_is_file(const char *path) { return is_there(path, S_IFREG); }
+bool path_is_folder(const char *path) { return is_there(path, S_IFDIR); }
