@@ -29,6 +29,7 @@
 #include "common/base/array.h"
 #include "common/base/clock.h"
 #include "common/base/log.h"
+#include "common/base/memory_text.h"
 #include "common/base/parallel.h"
 #include "common/base/scan.h"
 #include "common/base/version.h"
@@ -246,8 +247,6 @@ static enum status effective_params(const struct cli_opt *opts, const struct cli
                                     const struct common_opts *common, const char *stage, struct provenance *prov,
                                     struct err *err)
 {
-    size_t size = 0;
-
     for (int i = 0; !err->status && i < common->configs.count; i++)
         params_read_file(params->table, params->value, stage, common->configs.items[i], err);
     for (int i = 0; !err->status && i < common->sets.count; i++)
@@ -257,11 +256,11 @@ static enum status effective_params(const struct cli_opt *opts, const struct cli
     if (!err->status && params->check) params->check(params->value, err);
     if (err->status) return err->status;
 
-    FILE *to = open_memstream(&prov->params, &size);
-    if (!to) return err_nomem(err, "the parameters", 0);
-    params_print(params->table, params->value, stage, to);
-    const bool failed = ferror(to);
-    if (fclose(to) || failed) return err_nomem(err, "the parameters", size);
+    struct memory_text m = {0};
+    if (memory_text_open(&m, "the parameters", err)) return err->status;
+    params_print(params->table, params->value, stage, m.to);
+    if (memory_text_close(&m, "the parameters", err)) return err->status;
+    prov->params = m.text;
     return ST_OK;
 }
 

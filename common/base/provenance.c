@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/memory_text.h"
 #include "common/base/textfile.h"
 
 enum { QUOTED_SIZE = 2048 };
@@ -98,18 +99,12 @@ void provenance_print(const struct provenance *prov, FILE *to)
 
 char *provenance_inputs_text(const struct provenance *prov)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *to = open_memstream(&text, &size);
+    struct memory_text m = {0};
+    struct err err = ERR_INIT;
 
-    if (!to) return NULL;
-    print_inputs(prov, "", to);
-    const int failed = ferror(to);
-    if (fclose(to) || failed) {
-        free(text);
-        return NULL;
-    }
-    return text;
+    if (memory_text_open(&m, "a list of inputs", &err)) return NULL;
+    print_inputs(prov, "", m.to);
+    return memory_text_close(&m, "a list of inputs", &err) ? NULL : m.text;
 }
 
 void provenance_keep(struct provenance *prov, int count)

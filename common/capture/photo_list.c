@@ -15,6 +15,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/memory_text.h"
 #include "common/product/product.h"
 
 enum { QUOTED_SIZE = 1024 /* a file name has at most 255 bytes */, MAX_BRACKETS = 1000 /* of one view */ };
@@ -149,14 +150,11 @@ enum status photo_record_read(struct photo_record *r, const char *folder, const 
     return err->status;
 }
 
-/* Closes a text begun with open_memstream and writes it if it differs from the file. */
-static enum status finish_text(FILE *to, char **text, size_t *size, const char *path, struct err *err)
+/* Closes a text and writes it if it differs from the file. */
+static enum status finish_text(struct memory_text *m, const char *path, struct err *err)
 {
-    bool failed = ferror(to) != 0;
-    failed |= fclose(to) != 0;
-    if (!err->status && failed) err_nomem(err, "a text", *size);
-    if (!err->status) outfile_write_if_changed(path, *text, *size, err);
-    free(*text);
+    if (!err->status && !memory_text_close(m, "a text", err)) outfile_write_if_changed(path, m->text, m->size, err);
+    memory_text_release(m);
     return err->status;
 }
 
@@ -164,16 +162,16 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
 {
     const struct photo_info *info = &r->info;
     char file[QUOTED_SIZE], make[QUOTED_SIZE], model[QUOTED_SIZE], colour[QUOTED_SIZE];
-    char path[FILE_PATH], *text = NULL;
-    size_t size = 0;
+    char path[FILE_PATH];
+    struct memory_text m = {0};
 
     if (product_path_in(path, folder, PRODUCT_PHOTO, &(struct product_key){.photo = r->id}, err) ||
         textfile_quote(r->file, file, sizeof file, err) || textfile_quote(info->make, make, sizeof make, err) ||
         textfile_quote(info->model, model, sizeof model, err) ||
         textfile_quote(info->colour, colour, sizeof colour, err))
         return err->status;
-    FILE *to = open_memstream(&text, &size);
-    if (!to) return err_nomem(err, "a record", 0);
+    if (memory_text_open(&m, "a record", err)) return err->status;
+    FILE *to = m.to;
     fprintf(to, "%s\nfile %s\nhash %s\nsize %d %d\nbits %d\norientation %d\n", products[PRODUCT_PHOTO].head, file,
             r->hash, info->width, info->height, info->bits, info->orientation);
     fprintf(to, "exif %.17g %.17g %.17g %.17g %.17g\n", info->focal_mm, info->focal35_mm, info->seconds, info->f_number,
@@ -186,7 +184,7 @@ enum status photo_record_write(const struct photo_record *r, const char *folder,
         if (!textfile_quote(b->file, file, sizeof file, err))
             fprintf(to, "bracket %s %s %.17g\n", file, b->hash, b->exposure);
     }
-    return finish_text(to, &text, &size, path, err);
+    return finish_text(&m, path, err);
 }
 
 static enum status print_list(const struct photo_list *list, FILE *to, struct err *err)
@@ -229,13 +227,12 @@ enum status photo_list_write(const struct photo_list *list, const char *folder, 
         {PRODUCT_PHOTO_BRACKETS, print_brackets}, {PRODUCT_PHOTO_LIST, print_list}, {PRODUCT_PHOTOS_MK, print_make}};
     bool bracketed = list->count && list->photos[0].bracket_count;
     for (int i = bracketed ? 0 : 1; !err->status && i < 3; i++) {
-        char path[FILE_PATH], *text = NULL;
-        size_t size = 0;
+        char path[FILE_PATH];
+        struct memory_text m = {0};
         if (product_path_in(path, folder, texts[i].id, NULL, err)) return err->status;
-        FILE *to = open_memstream(&text, &size);
-        if (!to) return err_nomem(err, "a list of photos", 0);
-        texts[i].print(list, to, err);
-        finish_text(to, &text, &size, path, err);
+        if (memory_text_open(&m, "a list of photos", err)) return err->status;
+        texts[i].print(list, m.to, err);
+        finish_text(&m, path, err);
     }
     return err->status;
 }

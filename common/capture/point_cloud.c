@@ -18,6 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "common/base/memory_text.h"
 #include "common/base/scan.h"
 #include "common/product/product.h"
 
@@ -75,22 +76,16 @@ static void unpack(struct cloud_point *p, const uint8_t *from)
 /* Writes the provenance, whose lines begin with "# ", as comments. */
 static enum status print_provenance(FILE *to, const struct provenance *prov, struct err *err)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *lines = open_memstream(&text, &size);
-    if (!lines) return err_nomem(err, "a file's head", 1);
-    provenance_print(prov, lines);
-    const int failed = ferror(lines);
-    if (fclose(lines) || failed) {
-        free(text);
-        return err_nomem(err, "a file's head", size);
-    }
-    for (const char *p = text; *p;) {
+    struct memory_text m = {0};
+    if (memory_text_open(&m, "a file's head", err)) return err->status;
+    provenance_print(prov, m.to);
+    if (memory_text_close(&m, "a file's head", err)) return err->status;
+    for (const char *p = m.text; *p;) {
         const size_t n = strcspn(p, "\n");
         fprintf(to, "comment %.*s\n", (int)n - 2, p + 2);
         p += n + (p[n] == '\n');
     }
-    free(text);
+    memory_text_release(&m);
     return ST_OK;
 }
 

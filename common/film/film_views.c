@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/memory_text.h"
 #include "common/product/product.h"
 
 enum { MAX_FILM_VIEWS = 1000000, NAME_SIZE = 1024 };
@@ -86,15 +87,12 @@ static enum status print_views(FILE *to, const struct camera_set *set, const boo
 enum status film_views_write(const struct camera_set *set, const bool *keep, const char *path,
                              const struct provenance *prov, struct err *err)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *to = open_memstream(&text, &size);
-    if (!to) return err_nomem(err, "the views of a film", (size_t)set->view_count);
-    if (prov) provenance_print(prov, to);
-    print_views(to, set, keep, err);
-    if (fclose(to) && !err->status) err_nomem(err, "the views of a film", size);
-    if (!err->status) outfile_write_if_changed(path, text, size, err);
-    free(text);
+    struct memory_text m = {0};
+    if (memory_text_open(&m, "the views of a film", err)) return err->status;
+    if (prov) provenance_print(prov, m.to);
+    print_views(m.to, set, keep, err);
+    if (!memory_text_close(&m, "the views of a film", err)) outfile_write_if_changed(path, m.text, m.size, err);
+    memory_text_release(&m);
     return err->status;
 }
 

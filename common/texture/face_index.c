@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "common/base/array.h"
+#include "common/base/memory_text.h"
 #include "common/product/product.h"
 
 enum {
@@ -208,18 +209,15 @@ static enum status write_table(FILE *to, const int *ids, const struct face_views
 }
 
 /* Lines that were written so far: those of the provenance are counted by reading it again. */
-static int64_t count_lines(const struct provenance *prov)
+static int64_t count_lines(const struct provenance *prov, struct err *err)
 {
-    char *text = NULL;
-    size_t size = 0;
+    struct memory_text m = {0};
     int64_t lines = 0;
-    FILE *f = prov ? open_memstream(&text, &size) : NULL;
-    if (f) {
-        provenance_print(prov, f);
-        fclose(f);
-    }
-    for (size_t i = 0; i < size; i++) lines += text[i] == '\n';
-    free(text);
+    if (!prov || memory_text_open(&m, "a file's head", err)) return 0;
+    provenance_print(prov, m.to);
+    memory_text_close(&m, "a file's head", err);
+    for (size_t i = 0; i < m.size; i++) lines += m.text[i] == '\n';
+    memory_text_release(&m);
     return lines;
 }
 
@@ -231,8 +229,9 @@ enum status face_index_write(const char *path, const int *ids, const struct face
     if (!product_begin(&f, PRODUCT_FACE_INDEX, path, prov, err)) {
         fprintf(f.fp, "faces %d\n", count);
         const int64_t table = ftell(f.fp);
-        write_table(f.fp, ids, lists, count, table + (int64_t)count * FACE_INDEX_ROW, count_lines(prov) + 3 + count,
-                    err);
+        const int64_t head = count_lines(prov, err);
+        if (!err->status)
+            write_table(f.fp, ids, lists, count, table + (int64_t)count * FACE_INDEX_ROW, head + 3 + count, err);
     }
     for (int i = 0; !err->status && i < count; i++)
         for (int k = 0; !err->status && k < lists[i].count; k++) {

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "common/base/memory_text.h"
 #include "common/product/product.h"
 
 enum { STEPS = 3 }; /* in a stop, a factor of 2 */
@@ -30,18 +31,13 @@ double scene_exposure_of(double *of_views, int count)
 
 enum status scene_exposure_write(double exposure, const char *path, const struct provenance *prov, struct err *err)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *to = open_memstream(&text, &size);
-    if (!to) return err_nomem(err, "an exposure", sizeof exposure);
-    fprintf(to, "%s\n", products[PRODUCT_EXPOSURE].head);
-    if (prov) provenance_print(prov, to);
-    fprintf(to, "exposure %.17g\n", exposure);
-    if (fclose(to))
-        err_nomem(err, "an exposure", size);
-    else
-        outfile_write_if_changed(path, text, size, err);
-    free(text);
+    struct memory_text m = {0};
+    if (memory_text_open(&m, "an exposure", err)) return err->status;
+    fprintf(m.to, "%s\n", products[PRODUCT_EXPOSURE].head);
+    if (prov) provenance_print(prov, m.to);
+    fprintf(m.to, "exposure %.17g\n", exposure);
+    if (!memory_text_close(&m, "an exposure", err)) outfile_write_if_changed(path, m.text, m.size, err);
+    memory_text_release(&m);
     return err->status;
 }
 

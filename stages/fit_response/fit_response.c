@@ -12,6 +12,7 @@
 #include "common/base/cli.h"
 #include "common/base/file_path.h"
 #include "common/base/log.h"
+#include "common/base/memory_text.h"
 #include "common/base/outfile.h"
 #include "common/base/parallel.h"
 #include "common/capture/photo_list.h"
@@ -101,20 +102,14 @@ static enum status gather(struct patches *all, const struct photo_list *list, co
 static enum status write_response(const struct response *r, const char *path, const struct provenance *prov,
                                   struct err *err)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *to = open_memstream(&text, &size);
-    if (!to) return err_nomem(err, "a text", 0);
-    provenance_print(prov, to);
-    fprintf(to, "%s\ncurve %s\n", products[PRODUCT_RESPONSE].head, r->table ? "table 256" : "srgb");
+    struct memory_text m = {0};
+    if (memory_text_open(&m, "a response", err)) return err->status;
+    provenance_print(prov, m.to);
+    fprintf(m.to, "%s\ncurve %s\n", products[PRODUCT_RESPONSE].head, r->table ? "table 256" : "srgb");
     for (int i = 0; r->table && i < RESPONSE_LEVELS; i++)
-        fprintf(to, "%.9g %.9g %.9g\n", (double)r->light[0][i], (double)r->light[1][i], (double)r->light[2][i]);
-    const bool failed = fclose(to) != 0;
-    if (failed)
-        err_nomem(err, "a text", size);
-    else
-        outfile_write_if_changed(path, text, size, err);
-    free(text);
+        fprintf(m.to, "%.9g %.9g %.9g\n", (double)r->light[0][i], (double)r->light[1][i], (double)r->light[2][i]);
+    if (!memory_text_close(&m, "a response", err)) outfile_write_if_changed(path, m.text, m.size, err);
+    memory_text_release(&m);
     return err->status;
 }
 

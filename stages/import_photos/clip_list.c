@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/memory_text.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
@@ -96,15 +97,13 @@ static enum status print_clip(const struct clip *c, FILE *to, struct err *err)
 
 enum status clip_list_write(const struct clip_list *list, const char *path, struct err *err)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *to = open_memstream(&text, &size);
-    if (!to) return err_nomem(err, "a list of frames", 0);
-    fprintf(to, "remodel-frames 1\nrule %d\n", list->most);
-    for (int i = 0; !err->status && i < list->count; i++) print_clip(&list->clips[i], to, err);
-    if (fclose(to)) err_nomem(err, "a list of frames", size);
-    if (!err->status) outfile_write_if_changed(path, text, size, err);
-    free(text);
+    struct memory_text m = {0};
+    if (memory_text_open(&m, "a list of frames", err)) return err->status;
+    fprintf(m.to, "remodel-frames 1\nrule %d\n", list->most);
+    for (int i = 0; !err->status && i < list->count; i++) print_clip(&list->clips[i], m.to, err);
+    if (!err->status && !memory_text_close(&m, "a list of frames", err))
+        outfile_write_if_changed(path, m.text, m.size, err);
+    memory_text_release(&m);
     return err->status;
 }
 

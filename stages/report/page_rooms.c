@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "common/base/memory_text.h"
 #include "common/capture/panorama_name.h"
 #include "common/texture/picture_made.h"
 #include "stages/report/page_relit.h"
@@ -81,15 +82,16 @@ static enum status put_look(struct page *page, const struct rooms *rooms, const 
 static enum status put_looks(struct page *page, const struct rooms *rooms, const struct room_photo *p,
                              const char *before, char **list, char first[PICTURE_NAME], struct err *err)
 {
-    size_t size;
+    struct memory_text m = {0};
     FILE *to = page->to;
-    page->to = open_memstream(list, &size);
-    if (page->to) {
-        for (int k = 0; !err->status && k < p->look_count; k++) put_look(page, rooms, &p->looks[k], before, first, err);
-        fclose(page->to);
-    } else {
-        err_nomem(err, "a list of changes", PICTURE_NAME);
+    if (memory_text_open(&m, "a list of changes", err)) return err->status;
+    page->to = m.to;
+    for (int k = 0; !err->status && k < p->look_count; k++) put_look(page, rooms, &p->looks[k], before, first, err);
+    if (!err->status && !memory_text_close(&m, "a list of changes", err)) {
+        *list = m.text; /* which is the caller's now */
+        m.text = NULL;
     }
+    memory_text_release(&m);
     page->to = to;
     return err->status;
 }

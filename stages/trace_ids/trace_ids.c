@@ -24,6 +24,7 @@
 
 #include "common/base/cli.h"
 #include "common/base/log.h"
+#include "common/base/memory_text.h"
 #include "common/model/scene_inputs.h"
 #include "common/product/product.h"
 #include "stages/trace_ids/face_offsets.h"
@@ -184,19 +185,16 @@ static enum status reveal_view(void *ctx, int i, struct err *err)
     struct view_trace trace = {0};
     struct reveal reveal = {.base = &trace};
     const struct view *view = NULL;
-    char text[FILE_PATH], *lines = NULL;
-    size_t size = 0;
-    FILE *record = open_memstream(&lines, &size);
-    if (record)
-        record_path(text, j->out.items[i], err);
-    else
-        err_nomem(err, "a record", 1);
+    char text[FILE_PATH];
+    struct memory_text lines = {0};
+    if (!memory_text_open(&lines, "a record", err)) record_path(text, j->out.items[i], err);
     if (!err->status && !find_view(&view, j, j->view.items[i], err))
         view_trace(&trace, &j->rays, &j->in.axes, view, err);
-    for (int e = 0; !err->status && e < j->edits.count; e++) add_edit(&reveal, record, j, view, e, err);
-    if (record) fclose(record);
-    if (!err->status && !write_reveal(&reveal, j, view, j->out.items[i], err)) write_reveal_record(j, text, lines, err);
-    free(lines);
+    for (int e = 0; !err->status && e < j->edits.count; e++) add_edit(&reveal, lines.to, j, view, e, err);
+    if (!err->status) memory_text_close(&lines, "a record", err);
+    if (!err->status && !write_reveal(&reveal, j, view, j->out.items[i], err))
+        write_reveal_record(j, text, lines.text, err);
+    memory_text_release(&lines);
     reveal_release(&reveal);
     view_trace_release(&trace);
     return err->status;

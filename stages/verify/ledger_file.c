@@ -7,6 +7,7 @@
 
 #include "common/base/array.h"
 #include "common/base/file_path.h"
+#include "common/base/memory_text.h"
 #include "common/base/outfile.h"
 #include "common/base/textfile.h"
 
@@ -137,21 +138,19 @@ static enum status print_entries(const struct ledger *l, FILE *to, struct err *e
 
 enum status ledger_write(const struct ledger *l, const char *path, struct err *err)
 {
-    char *text = NULL, hash[HASH_TEXT];
-    size_t size = 0;
+    char hash[HASH_TEXT];
+    struct memory_text m = {0};
     struct outfile f = {0};
-    FILE *memory = open_memstream(&text, &size);
-    if (!memory) return err_nomem(err, "a ledger", 1);
-    print_entries(l, memory, err);
-    if (fclose(memory) && !err->status) err_nomem(err, "a ledger", size);
-    if (!err->status && !outfile_open(&f, path, err)) {
-        hash_bytes(hash, text, size);
-        fwrite(text, 1, size, f.fp);
+    if (memory_text_open(&m, "a ledger", err)) return err->status;
+    print_entries(l, m.to, err);
+    if (!err->status && !memory_text_close(&m, "a ledger", err) && !outfile_open(&f, path, err)) {
+        hash_bytes(hash, m.text, m.size);
+        fwrite(m.text, 1, m.size, f.fp);
         fprintf(f.fp, "end %s\n", hash);
         outfile_commit(&f, err);
     }
     outfile_discard(&f);
-    free(text);
+    memory_text_release(&m);
     return err->status;
 }
 

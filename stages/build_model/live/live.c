@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/memory_text.h"
 #include "common/base/textfile.h"
 #include "common/base/version.h"
 #include "common/model/scene_inputs.h"
@@ -64,11 +65,11 @@ void live_end(void)
 
 static enum status keep_params(struct err *err)
 {
-    size_t size = 0;
-    FILE *to = open_memstream(&live.prov.params, &size);
-    if (!to) return err_nomem(err, "the parameters", 0);
-    params_print(model_param_table, &live.params, "build_model", to);
-    return fclose(to) ? err_nomem(err, "the parameters", size) : ST_OK;
+    struct memory_text m = {0};
+    if (memory_text_open(&m, "the parameters", err)) return err->status;
+    params_print(model_param_table, &live.params, "build_model", m.to);
+    if (!memory_text_close(&m, "the parameters", err)) live.prov.params = m.text;
+    return err->status;
 }
 
 /* Lines "key = value", as params_print() writes them, without the library that reads the files of people. */

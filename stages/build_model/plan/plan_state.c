@@ -2,6 +2,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "common/base/memory_text.h"
+
 #include "stages/build_model/plan/plan_internal.h"
 
 static void put(FILE *to, const double *values, int count)
@@ -72,10 +74,10 @@ static void put_lights(FILE *to, const struct plan *plan)
 
 enum status plan_state(char **state, const struct plan *plan, struct err *err)
 {
-    size_t size = 0;
+    struct memory_text m = {0};
     *state = NULL;
-    FILE *to = open_memstream(state, &size);
-    if (!to) return err_nomem(err, "a plan as a text", 0);
+    if (memory_text_open(&m, "a plan as a text", err)) return err->status;
+    FILE *to = m.to;
     put_walls(to, plan);
     put_openings(to, plan);
     put_rooms(to, plan);
@@ -93,9 +95,6 @@ enum status plan_state(char **state, const struct plan *plan, struct err *err)
         put(to, (const double[]){t->by[0], t->by[1], t->by[2], t->turn}, 4);
     }
     fprintf(to, "wishes %d zones %d\n", plan->wish_count, plan->zone_count);
-    const int failed = ferror(to);
-    if (!fclose(to) && !failed) return ST_OK;
-    free(*state);
-    *state = NULL;
-    return err_nomem(err, "a plan as a text", size);
+    if (!memory_text_close(&m, "a plan as a text", err)) *state = m.text;
+    return err->status;
 }
