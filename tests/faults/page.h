@@ -15,6 +15,7 @@ struct fault_page {
     int malloc_sticky;   /* all after it fail as well */
     atomic_int foreign;  /* a failing allocation was asked for by a library that is not ours */
     char library[128];   /* its file */
+    long frames[6];      /* where the program itself asked for it: for addr2line */
     atomic_long clocks;  /* readings of a clock since main() began */
     long clock_at;       /* from which one each clock goes back, an hour with each reading; 0: none */
 };

@@ -34,13 +34,17 @@ static int (*real_main)(int, char **, char **);
 static void *main_base;
 static _Thread_local bool inside;
 
-/* Notes which file asked for the allocation: the first on the stack that is not a part of the languages' own libraries. */
-static void note_owner(void)
+/* Notes which file asked for the allocation: the first on the stack that is not a part of the languages' own libraries;
+ * and, of the first one that fails, the program's own places on the way there. The
+ * last one counts: it is what a program ends of. */
+static void note_owner(bool first)
 {
     static const char *const own[] = {"/libc.so", "/libc-",    "/libstdc++", "/libgcc_s",
                                       "/libm.so", "/ld-linux", "shim.so"};
     void *frames[48];
     const int n = backtrace(frames, 48);
+    bool known = false;
+    size_t places = 0;
 
     for (int i = 0; i < n; i++) {
         Dl_info info;
@@ -48,9 +52,13 @@ static void note_owner(void)
         if (!dladdr(frames[i], &info) || !info.dli_fname) continue;
         for (size_t k = 0; k < sizeof own / sizeof *own; k++) skipped = skipped || strstr(info.dli_fname, own[k]);
         if (skipped) continue;
-        if (info.dli_fbase != main_base && !atomic_exchange(&page->foreign, 1))
+        if (first && info.dli_fbase == main_base && places < sizeof page->frames / sizeof *page->frames)
+            page->frames[places++] = (char *)frames[i] - (char *)main_base - 1;
+        if (!known) {
+            atomic_store(&page->foreign, info.dli_fbase != main_base);
             snprintf(page->library, sizeof page->library, "%s", info.dli_fname);
-        return;
+        }
+        known = true;
     }
 }
 
@@ -60,7 +68,7 @@ static bool refused(void)
     const long n = atomic_fetch_add(&page->mallocs, 1) + 1;
     if (!page->malloc_at || n < page->malloc_at || (n > page->malloc_at && !page->malloc_sticky)) return false;
     inside = true;
-    note_owner();
+    note_owner(n == page->malloc_at);
     inside = false;
     errno = ENOMEM;
     return true;

@@ -31,8 +31,9 @@ struct tracer {
     pid_t main;
     pid_t threads[THREADS]; /* of the program; other processes are its children */
     int count;
-    bool begun;   /* main() */
-    bool stopped; /* a thread waits for its first stop */
+    pid_t returning; /* a thread whose close() shall seem to fail */
+    bool begun;      /* main() */
+    bool stopped;    /* a thread waits for its first stop */
 };
 
 static const struct {
@@ -129,8 +130,8 @@ static bool path_of_fd(pid_t pid, long fd, char *path, size_t size)
 static bool of_interest(const char *path)
 {
     static const char *const others[] = {
-        "/proc/",  "/sys/",      "/dev/",  "/etc/", "/usr/lib/", "/lib/", "/lib64/", "/run/", "/usr/share/locale",
-        "/memfd:", "anon_inode", "socket:"};
+        "/proc/",  "/sys/", "/dev/",      "/etc/",  "/usr/lib/", "/lib/", "/lib64/", "/run/", "/usr/share/locale",
+        "/memfd:", "pipe:", "anon_inode", "socket:"};
 
     if (!*path) return false;
     for (size_t i = 0; i < sizeof others / sizeof *others; i++)
@@ -203,10 +204,15 @@ static void at_call(struct tracer *t, pid_t pid)
     if (f->temporary && strncmp(path, t->run->temp, strlen(t->run->temp))) return;
     const long n = ++t->result->counts[call];
     if (call != f->call || n < f->at || (n > f->at && !f->sticky)) return;
+    if (!t->result->happened) snprintf(t->result->path, sizeof t->result->path, "%.511s", path);
     t->result->happened = true;
     if (f->kill) {
         kill(-t->main, SIGKILL);
         kill(t->main, SIGKILL);
+        return;
+    }
+    if (call == CALL_CLOSE) {
+        t->returning = pid;
         return;
     }
     if (f->shorter) {
@@ -216,6 +222,17 @@ static void at_call(struct tracer *t, pid_t pid)
         r.orig_rax = (unsigned long)-1;
         r.rax = (unsigned long)-f->error;
     }
+    ptrace(PTRACE_SETREGS, pid, 0, &r);
+}
+
+/* A close() that fails has closed the file: only what it returns is changed. */
+static void at_return(struct tracer *t, pid_t pid)
+{
+    struct user_regs_struct r;
+
+    t->returning = 0;
+    if (ptrace(PTRACE_GETREGS, pid, 0, &r)) return;
+    r.rax = (unsigned long)-t->run->fault.error;
     ptrace(PTRACE_SETREGS, pid, 0, &r);
 }
 
@@ -247,7 +264,9 @@ static void at_stop(struct tracer *t, pid_t pid, int status)
         }
     } else if (!event && sig != SIGSTOP && sig != SIGTRAP)
         pass = sig;
-    ptrace(PTRACE_CONT, pid, 0, pass);
+    else if (!event && sig == SIGTRAP && t->returning == pid)
+        at_return(t, pid);
+    ptrace(t->returning == pid ? PTRACE_SYSCALL : PTRACE_CONT, pid, 0, pass);
 }
 
 bool trace_program(struct trace_result *result, const struct trace_run *run)

@@ -54,10 +54,11 @@ struct trace_run {
 
 struct trace_result {
     long counts[CALL_COUNT];
-    int code;      /* exit code, or -1 */
-    int signal;    /* that ended it, or 0 */
-    bool hung;     /* it was killed after the time was over */
-    bool happened; /* the fault */
+    int code;       /* exit code, or -1 */
+    int signal;     /* that ended it, or 0 */
+    bool hung;      /* it was killed after the time was over */
+    bool happened;  /* the fault */
+    char path[512]; /* that it happened to */
     double seconds;
 };
 

@@ -68,6 +68,23 @@ bool tree_same(const struct tree_file *a, const struct tree_file *b)
     return a->inode == b->inode && a->size == b->size && a->changed == b->changed;
 }
 
+unsigned long tree_hash_of(const char *folder, const char *path)
+{
+    size_t size = 0;
+    char *bytes = tree_bytes(folder, path, &size);
+    unsigned long hash = 14695981039346656037UL;
+
+    for (size_t i = 0; bytes && i < size; i++) hash = (hash ^ (unsigned char)bytes[i]) * 1099511628211UL;
+    if (!bytes) hash = 0;
+    free(bytes);
+    return hash;
+}
+
+void tree_hash(struct tree *tree, const char *folder)
+{
+    for (size_t i = 0; i < tree->count; i++) tree->files[i].hash = tree_hash_of(folder, tree->files[i].path);
+}
+
 char *tree_bytes(const char *folder, const char *path, size_t *size)
 {
     char name[8192];
