@@ -21,6 +21,7 @@
 
 static enum status jpeg_damaged(const struct photo_bytes *file, const char *reason, struct err *err)
 {
+    if (strcasestr(reason, "memory")) return err_nomem(err, "a JPEG decoder", 0); /* the photo may be whole */
     return err_set(err, ST_DATA, "%s is a damaged or cut-off JPEG (%s); copy or export the photo again.", file->path,
                    reason);
 }

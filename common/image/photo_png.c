@@ -46,6 +46,7 @@ static void png_take_bytes(png_structp png, png_bytep to, size_t size)
 
 static enum status png_damaged(const struct png_reader *r, struct err *err)
 {
+    if (strcasestr(r->message, "memory")) return err_nomem(err, "a PNG decoder", 0); /* the photo may be whole */
     return err_set(err, ST_DATA, "%s is a damaged or cut-off PNG (%s); copy or export the photo again.", r->file->path,
                    r->message);
 }
