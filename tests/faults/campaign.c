@@ -2,11 +2,12 @@
  *
  * campaign --folder DIR --command FILE --shim SO --results TSV --details TXT [--each N] [--inputs N]
  *
- * DIR is a project with a scene, in which the command (as shim.c recorded it) was run before. A first run tells what the
- * command makes; before each injection its products are removed. Afterwards
+ * DIR is a project with a scene, in which the command (as shim.c recorded it) was run before. A first run tells what
+ * the command makes; before each injection its products are removed. Afterwards
  *
  *   right      it ended well, and each product has the bytes of the first run
- *   sentence   it failed with "STAGE: error: ..." that names a file or memory; what it left is whole; nothing else changed
+ *   sentence   it failed with "STAGE: error: ..." that names a file or memory; what it left is whole, and nothing else
+ *              changed; or it made a page that says so
  *   killed     it was killed, as the injection says; what it left is whole
  *   library    an allocation that failed was a library's, which ended the process
  *   accepted   damaged inputs alone: it ended well, and what it made is not what it makes of the whole input
@@ -94,9 +95,9 @@ static struct {
     char *argv[512];
     char temp[4096], errors[4096];
     struct fault_page *page;
-    int page_fd, limit;
-    struct tree before; /* without the products */
-    struct tree made;   /* the products, with their bytes */
+    int page_fd, limit, error; /* of the fault of this run */
+    struct tree before;        /* without the products */
+    struct tree made;          /* the products, with their bytes */
     char *opened[4096];
     int opened_count;
     long counts[64][OUTCOMES];
@@ -139,6 +140,7 @@ static bool run(struct trace_result *result, struct trace_fault fault, bool note
                           .fault = fault};
 
     if (note) r.opened = note_input;
+    c.error = fault.error;
     if (!trace_program(result, &r)) exit(3);
     FILE *f = fopen(c.errors, "rb");
     const size_t n = f ? fread(said, 1, sizeof said - 1, f) : 0;
@@ -197,6 +199,24 @@ static enum outcome judge_words(const char *words)
     for (size_t i = 0; i < sizeof named / sizeof *named; i++)
         if (strstr(line, named[i])) return SENTENCE;
     return VAGUE;
+}
+
+/* Whether a page that was made all the same says what went wrong: the page of a scene shows what it can. */
+static bool is_said(int error)
+{
+    const char *words[] = {error ? strerror(error) : "not enough memory", "not enough memory",
+                           "Cannot allocate memory"};
+
+    for (size_t i = 0; i < c.made.count; i++) {
+        size_t size = 0;
+        char *bytes = tree_bytes(c.folder, c.made.files[i].path, &size);
+        bool said_so = false;
+        for (size_t k = 0; bytes && k < sizeof words / sizeof *words; k++)
+            said_so = said_so || memmem(bytes, size, words[k], strlen(words[k]));
+        free(bytes);
+        if (said_so) return true;
+    }
+    return false;
 }
 
 /* Empties the folder for temporary files. True: something had been left there, though nobody killed the program. */
@@ -268,7 +288,7 @@ static enum outcome judge(const struct trace_result *r, bool killing, const char
     else if (r->signal && !(killing && r->signal == SIGKILL))
         o = c.page->foreign ? LIBRARY : CRASH;
     else if (well && (!all || !whole))
-        o = damaged ? ACCEPTED : WRONG;
+        o = damaged ? ACCEPTED : is_said(c.error) ? SENTENCE : WRONG;
     else if (strange || (!whole && !damaged))
         o = c.page->foreign ? LIBRARY : HALF;
     else if (well)
@@ -323,8 +343,8 @@ static void tally(const char *kind, const char *where, enum outcome o, const cha
     const char *error = strstr(said, ": error: ");
     const size_t length = strlen(said);
     char line[512], places[256] = "";
-    snprintf(line, sizeof line, "%.*s ... %.200s", error ? (int)strcspn(error + 2, "\n") % 300 : 0, error ? error + 2 : "",
-             length > 160 ? said + length - 160 : said);
+    snprintf(line, sizeof line, "%.*s ... %.200s", error ? (int)strcspn(error + 2, "\n") % 300 : 0,
+             error ? error + 2 : "", length > 160 ? said + length - 160 : said);
     for (char *p = line; *p; p++)
         if (*p == '\n' || *p == '\t') *p = '|';
     for (size_t i = 0; i < sizeof c.page->frames / sizeof *c.page->frames && c.page->frames[i]; i++)
@@ -510,8 +530,10 @@ static void first_run(void)
     memset(c.page, 0, sizeof *c.page);
     if (!run(&r, (struct trace_fault){0}, true)) die(said);
     if (!tree_read(&after, c.folder)) die("the folder cannot be read");
-    /* what it made: its products; all others are inputs or belong to others. A file that would get the bytes that it has
-     * is not written at all */
+    /* What it made are its products; all others are inputs or belong to others. A file that would get the bytes that
+     * it has is not written at all. And there are pictures of a page, which are kept from run to run. */
+    for (size_t i = 0; i < start.count && !strcmp(c.stage, "report"); i++)
+        if (strstr(start.files[i].path, "/page/")) tree_remove(c.folder, start.files[i].path);
     bool any = false;
     const char *out = NULL;
     for (int i = 1; c.argv[i]; i++)

@@ -1,6 +1,6 @@
 /* shim.c - a library that is loaded into a program before all others (LD_PRELOAD), to make its allocations fail and its
- * clocks go back, as page.h says. Calls of the kernel are counted and made to fail from outside (trace.c): the C library
- * does not pass its own writes through a name that a loaded library could take over.
+ * clocks go back, as page.h says. Calls of the kernel are counted and made to fail from outside (trace.c): the C
+ * library does not pass its own writes through a name that a loaded library could take over.
  *
  * With FAULT_RECORD=DIR it does none of this: each program below a folder bin/ leaves its command line in DIR. */
 #include <dlfcn.h>

@@ -1,5 +1,5 @@
-/* trace.h - runs a program under ptrace(), counts the calls of the kernel that it makes after main() began, and makes one
- * of them fail, or kills the program there.
+/* trace.h - runs a program under ptrace(), counts the calls of the kernel that it makes after main() began, and makes
+ * one of them fail, or kills the program there.
  *
  * Calls are seen where the kernel gets them, so that those inside the C library and in other libraries count as well.
  * Only files of interest count: not /proc, /sys, /dev, /etc, shared libraries, standard input, output and error. */
