@@ -145,18 +145,25 @@ static enum status write_changes(const struct data_job *j, const struct walk_vie
                                  const char *folder, bool relit, bool *any, struct err *err)
 {
     const struct walk_scene *s = j->s;
+    const enum product_id id = relit ? PRODUCT_RELIT_JPEG : PRODUCT_PICTURE_JPEG;
     char jpeg[FILE_PATH], sources[FILE_PATH];
     struct data_file f = {0};
+    bool *found = calloc((size_t)p->count + 1, sizeof *found); /* looked for once, so that all of this says the same */
     *any = false;
-    for (int i = 0; i < p->count; i++)
-        *any |= find_picture(jpeg, folder, relit ? PRODUCT_RELIT_JPEG : PRODUCT_PICTURE_JPEG,
-                             s->cameras[p->first + i].name, err);
-    if (!*any || err->status || open_of_photo(&f, s, kind, p->photo, err)) return err->status;
+    if (!found) return err_nomem(err, "pictures of a photo", (size_t)p->count);
+    for (int i = 0; i < p->count; i++) {
+        found[i] = find_picture(jpeg, folder, id, s->cameras[p->first + i].name, err);
+        *any |= found[i];
+    }
+    if (!*any || err->status || open_of_photo(&f, s, kind, p->photo, err)) {
+        free(found);
+        return err->status;
+    }
     putc('[', f.fp);
     for (int i = 0; !err->status && i < p->count; i++) {
         const char *view = s->cameras[p->first + i].name;
         if (i) fputs(",\n", f.fp);
-        if (!find_picture(jpeg, folder, relit ? PRODUCT_RELIT_JPEG : PRODUCT_PICTURE_JPEG, view, err))
+        if (!found[i] || product_path_in(jpeg, folder, id, &(struct product_key){.name = view}, err))
             fputs("null", f.fp);
         else if (relit)
             view_texture_write_change(f.fp, s, p->first + i, jpeg, NULL, err);
@@ -168,6 +175,7 @@ static enum status write_changes(const struct data_job *j, const struct walk_vie
     putc(']', f.fp);
     if (!err->status) data_file_commit(&f, j->bytes, err);
     data_file_discard(&f);
+    free(found);
     return err->status;
 }
 
