@@ -152,7 +152,9 @@ static enum status write_changes(const struct data_job *j, const struct walk_vie
     *any = false;
     if (!found) return err_nomem(err, "pictures of a photo", (size_t)p->count);
     for (int i = 0; i < p->count; i++) {
-        found[i] = find_picture(jpeg, folder, id, s->cameras[p->first + i].name, err);
+        const char *view = s->cameras[p->first + i].name;
+        found[i] = find_picture(jpeg, folder, id, view, err) &&
+                   (relit || find_picture(sources, folder, PRODUCT_PICTURE_SOURCES, view, err));
         *any |= found[i];
     }
     if (!*any || err->status || open_of_photo(&f, s, kind, p->photo, err)) {
@@ -167,10 +169,8 @@ static enum status write_changes(const struct data_job *j, const struct walk_vie
             fputs("null", f.fp);
         else if (relit)
             view_texture_write_change(f.fp, s, p->first + i, jpeg, NULL, err);
-        else if (find_picture(sources, folder, PRODUCT_PICTURE_SOURCES, view, err))
+        else if (!product_path_in(sources, folder, PRODUCT_PICTURE_SOURCES, &(struct product_key){.name = view}, err))
             view_texture_write_change(f.fp, s, p->first + i, jpeg, sources, err);
-        else
-            fputs("null", f.fp);
     }
     putc(']', f.fp);
     if (!err->status) data_file_commit(&f, j->bytes, err);
