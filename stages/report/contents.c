@@ -8,6 +8,7 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 #include "stages/report/contents_parts.h"
+#include "stages/report/passing.h"
 
 enum status contents_note(struct contents *c, struct err *err, const char *fmt, ...)
 {
@@ -16,7 +17,7 @@ enum status contents_note(struct contents *c, struct err *err, const char *fmt, 
     va_start(args, fmt);
     vsnprintf(c->notes[c->note_count++], NOTE_SIZE, fmt, args);
     va_end(args);
-    return ST_OK;
+    return passing_refuse(c->notes[c->note_count - 1], err);
 }
 
 bool contents_product(char path[FILE_PATH], const char *folder, enum product_id id, const struct product_key *key)

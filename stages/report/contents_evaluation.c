@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 
 #include "common/base/parallel.h"
+#include "stages/report/passing.h"
 
 struct held_job {
     struct contents *c;
@@ -55,6 +56,8 @@ enum status contents_read_held(struct contents *c, const char *folder, struct er
     }
     struct held_job job = {c, folder};
     parallel_for((size_t)c->held.view_count, 1, make_held_cards, &job);
+    for (int i = 0; i < c->held.view_count; i++)
+        if (passing_refuse(c->held_cards[i].problem, err)) return err->status;
     return ST_OK;
 }
 

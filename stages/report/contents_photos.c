@@ -10,6 +10,7 @@
 #include "common/base/array.h"
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
+#include "stages/report/passing.h"
 
 enum { PHOTO_HEIGHT = 200, MANY_PHOTOS = 100, PHOTO_HEIGHT_OF_MANY = 120 }; /* of thumbnails, px */
 
@@ -101,5 +102,7 @@ enum status contents_read_photos(struct contents *c, const char *shared, const c
     for (int i = 0; i < c->photos.count; i++) c->photo_cards[i].record = &c->photos.photos[i];
     struct photo_job job = {c, folder, shared, c->photos.count > MANY_PHOTOS ? PHOTO_HEIGHT_OF_MANY : PHOTO_HEIGHT};
     if (path_is_folder(folder)) parallel_for((size_t)c->photos.count, 1, make_photo_cards, &job);
+    for (int i = 0; i < c->photos.count; i++)
+        if (passing_refuse(c->photo_cards[i].problem, err)) return err->status;
     return find_left_out(c, folder, err);
 }

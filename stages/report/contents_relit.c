@@ -24,6 +24,7 @@
 #include "common/capture/photo_list.h"
 #include "common/texture/picture_record.h"
 #include "stages/report/contents_parts.h"
+#include "stages/report/passing.h"
 
 struct view_record {
     char view[256];
@@ -41,7 +42,7 @@ struct relit_reading {
 
 static enum status note(struct relit_card *card, const struct err *problem, struct err *err)
 {
-    if (problem->status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", problem->text);
+    if (passing_refuse(problem->text, err)) return err->status;
     if (array_append(&card->notes, (size_t)card->note_count, sizeof *card->notes, "notes", err)) return err->status;
     snprintf(card->notes[card->note_count++], sizeof *card->notes, "a relit picture is left out: %.800s",
              problem->text);

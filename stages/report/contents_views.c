@@ -6,6 +6,7 @@
 
 #include "common/base/parallel.h"
 #include "common/base/sort.h"
+#include "stages/report/passing.h"
 
 /* Reprojection errors of the sparse points in the rectified views. */
 static enum status measure_points(struct contents *c, struct err *err)
@@ -156,6 +157,8 @@ enum status contents_read_views(struct contents *c, const char *folder, struct e
     match_photos(c);
     struct view_job job = {c, folder};
     parallel_for((size_t)c->views.view_count, 1, make_view_cards, &job);
+    for (int i = 0; i < c->views.view_count; i++)
+        if (passing_refuse(c->view_cards[i].problem, err)) return err->status;
 
     int pictures = 0;
     for (int i = 0; i < c->views.view_count; i++) pictures += c->view_cards[i].picture.rgb != NULL;

@@ -5,10 +5,11 @@
 #include <stdlib.h>
 
 #include "common/base/array.h"
+#include "stages/report/passing.h"
 
 enum status rooms_note(struct rooms *rooms, const char *what, const struct err *problem, struct err *err)
 {
-    if (problem->status == ST_NOMEM) return err_set(err, ST_NOMEM, "%s", problem->text);
+    if (passing_refuse(problem->text, err)) return err->status;
     if (array_append(&rooms->notes, (size_t)rooms->note_count, sizeof *rooms->notes, "notes", err)) return err->status;
     snprintf(rooms->notes[rooms->note_count++], sizeof *rooms->notes, "%.100s: %.800s", what, problem->text);
     return ST_OK;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/file_bytes.h"
 
 static struct setting *find(const struct settings *s, const char *section, const char *key)
 {
@@ -46,8 +47,10 @@ static int add_setting(void *user, const char *section, const char *key, const c
 enum status settings_add_file(struct settings *s, const char *path, struct err *err)
 {
     struct reader reader = {s, err};
-    int rc = ini_parse(path, add_setting, &reader);
-    if (rc == -1) return err_errno(err, "open", path);
+    struct file_bytes file = {0}; /* inih takes an error of the disk for the end of the file */
+    if (file_bytes_read(&file, path, err)) return err->status;
+    const int rc = ini_parse_string(file.bytes, add_setting, &reader);
+    file_bytes_release(&file);
     if (rc) err_set(err, ST_DATA, "%s:%d: found another line, wanted \"key = value\" or \"[section]\".", path, rc);
     return err->status;
 }
