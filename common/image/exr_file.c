@@ -1,7 +1,9 @@
 /* exr_file.c - errors of reading and writing OpenEXR files. */
 #include "common/image/exr_file.h"
 
+#include <stdatomic.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 const char *const exr_provenance_names[EXR_PROVENANCE_COUNT] = {"remodel:stage", "remodel:version",
@@ -16,10 +18,23 @@ static void keep_message(exr_const_context_t ctxt, exr_result_t code, const char
     if (!library_message[0]) snprintf(library_message, sizeof library_message, "%s", message);
 }
 
+static atomic_int refused;
+
+static void *take(size_t size)
+{
+    void *p = malloc(size);
+    if (!p) atomic_fetch_add(&refused, 1);
+    return p;
+}
+
+int exr_library_refused(void) { return atomic_load(&refused); }
+
 exr_context_initializer_t exr_library_init(void)
 {
     exr_context_initializer_t init = EXR_DEFAULT_CONTEXT_INITIALIZER;
     init.error_handler_fn = keep_message;
+    init.alloc_fn = take;
+    init.free_fn = free;
     library_message[0] = 0;
     return init;
 }

@@ -14,6 +14,8 @@ extern const char
 
 /* Defaults for a new OpenEXRCore context that records the library's first error message of the calling thread. */
 exr_context_initializer_t exr_library_init(void);
+/* How many allocations the library was refused so far. It may leave out an attribute then and still succeed. */
+int exr_library_refused(void);
 
 /* "cannot VERB PATH: REASON.", with the recorded message or, without one, the text of `code`. Returns ST_NOMEM if the
  * library is out of memory, otherwise `status`. */

@@ -301,6 +301,7 @@ static enum status read_file(struct exr_image *im, const char *path, struct file
     exr_context_initializer_t init = exr_library_init();
     exr_chunk_info_t info;
     int threads = parallel_threads();
+    const int refused = exr_library_refused();
 
     *im = (struct exr_image){0};
     init.flags = EXR_CONTEXT_FLAG_DISABLE_CHUNK_RECONSTRUCTION; /* a missing chunk is an error */
@@ -339,6 +340,7 @@ static enum status read_file(struct exr_image *im, const char *path, struct file
     free(r.faults);
     free(r.plane_from_channel);
     if (r.ctxt) exr_finish(&r.ctxt);
+    if (!err->status && exr_library_refused() != refused) err_nomem(err, "an EXR file", 0);
     if (err->status) exr_image_release(im);
     return err->status;
 }
