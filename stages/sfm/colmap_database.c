@@ -15,7 +15,9 @@ struct colmap_database {
 
 static enum status failed(struct colmap_database *db, const char *what, struct err *err)
 {
-    return err_set(err, ST_IO, "COLMAP's database: SQLite could not %s: %s.", what, sqlite3_errmsg(db->sql));
+    const char *path = db->sql ? sqlite3_db_filename(db->sql, "main") : NULL;
+    return err_set(err, ST_IO, "COLMAP's database %s: SQLite could not %s: %s.", path ? path : "", what,
+                   sqlite3_errmsg(db->sql));
 }
 
 static enum status run_text(struct colmap_database *db, const char *text, struct err *err)
