@@ -43,6 +43,25 @@ static bool begins_with_mark(const struct textfile *t, const char *mark)
     return t->size >= n && !memcmp(t->bytes, mark, n);
 }
 
+/* A program's text, which says so at its top, ends with a line break: another end means that it was cut off. People's
+ * texts and scripts, which people go on with, need not end so. */
+static bool is_cut(const struct textfile *t)
+{
+    static const char made[] = "# remodel ", script[] = "remodel-script ";
+    bool ours = false;
+
+    if (!t->size || t->bytes[t->size - 1] == '\n') return false;
+    for (size_t at = 0, heads = 0; at < t->size && heads < 2;) {
+        const char *line = t->bytes + at, *end = memchr(line, '\n', t->size - at);
+        const size_t n = end ? (size_t)(end - line) : t->size - at;
+        if (n >= strlen(script) && !memcmp(line, script, strlen(script))) return false;
+        ours = ours || (n >= strlen(made) && !memcmp(line, made, strlen(made)));
+        heads += *line != '#';
+        at += n + 1;
+    }
+    return ours;
+}
+
 enum status textfile_take(struct textfile *t, struct file_bytes *file, const char *path, struct err *err)
 {
     const char *nul;
@@ -58,6 +77,10 @@ enum status textfile_take(struct textfile *t, struct file_bytes *file, const cha
         for (const char *p = t->bytes; p < nul; p++) t->line += *p == '\n';
         t->line++;
         textfile_error(t, err, "\\0", "text without NUL bytes; the file is damaged or not a text file");
+    } else if (is_cut(t)) {
+        for (size_t i = 0; i < t->size; i++) t->line += t->bytes[i] == '\n';
+        t->line++;
+        textfile_error(t, err, NULL, "a line break at the end of the file; it was cut off, so make or copy it again");
     }
     if (!err->status && begins_with_mark(t, "\xEF\xBB\xBF")) t->at = 3;
     if (err->status) textfile_release(t);

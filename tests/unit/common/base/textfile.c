@@ -64,6 +64,30 @@ static void a_byte_order_mark_is_skipped(void **state)
     textfile_release(&t);
 }
 
+static void a_product_that_was_cut_off_is_refused(void **state)
+{
+    static const struct {
+        const char *text, *words; /* NULL: it is read */
+    } cases[] = {
+        {"# remodel sfm_import 0.1.0\n# a = 1\n1 2 3\n", NULL},
+        {"# remodel sfm_import 0.1.0\n# a = 1\n1 2 3", "t.txt:3: found the end of the file, wanted a line break"},
+        {"remodel-photo 2\n# remodel import_photos 0.1.0\nfile a", "t.txt:3: found the end of the file"},
+        {"# remodel import_pho", "t.txt:1: found the end of the file"},
+        {"1 2 3", NULL},                                                          /* of people */
+        {"# remodel suggest_model 0.1.0\nremodel-script 1\nset ceiling 2", NULL}, /* people go on with it */
+    };
+
+    (void)state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct textfile t;
+        struct err err = ERR_INIT;
+        const bool failed = textfile_open(&t, scratch_write("t.txt", cases[i].text), &err);
+        assert_int_equal(failed, cases[i].words != NULL);
+        if (failed) assert_non_null(strstr(err.text, cases[i].words));
+        textfile_release(&t);
+    }
+}
+
 static void utf_16_is_refused_by_name(void **state)
 {
     static const char text[] = "\xFF\xFEh\0i\0";
@@ -312,6 +336,7 @@ int main(void)
         cmocka_unit_test(records_are_read),
         cmocka_unit_test(a_byte_order_mark_is_skipped),
         cmocka_unit_test(utf_16_is_refused_by_name),
+        cmocka_unit_test(a_product_that_was_cut_off_is_refused),
         cmocka_unit_test(raw_lines_include_blanks_and_comments),
         cmocka_unit_test(invalid_lines_are_located),
         cmocka_unit_test(numbers_stay_within_their_range),
