@@ -204,17 +204,18 @@ static enum outcome judge_words(const char *words)
 }
 
 /* Whether a page that was made all the same says what went wrong: the page of a scene shows what it can. */
-static bool is_said(int error)
+static bool is_said(int error, const char *path)
 {
-    const char *words[] = {error ? strerror(error) : "not enough memory", "not enough memory",
+    const char *words[] = {path, error ? strerror(error) : "not enough memory", "not enough memory",
                            "Cannot allocate memory"};
 
     for (size_t i = 0; i < c.made.count; i++) {
         size_t size = 0;
         char *bytes = tree_bytes(c.folder, c.made.files[i].path, &size);
         bool said_so = false;
-        for (size_t k = 0; bytes && k < sizeof words / sizeof *words; k++)
-            said_so = said_so || memmem(bytes, size, words[k], strlen(words[k]));
+        for (size_t k = *path ? 0 : 1; bytes && k < sizeof words / sizeof *words; k++)
+            if (!memmem(c.made.files[i].bytes, (size_t)c.made.files[i].size, words[k], strlen(words[k])))
+                said_so = said_so || memmem(bytes, size, words[k], strlen(words[k]));
         free(bytes);
         if (said_so) return true;
     }
@@ -290,7 +291,7 @@ static enum outcome judge(const struct trace_result *r, bool killing, const char
     else if (r->signal && !(killing && r->signal == SIGKILL))
         o = c.page->foreign ? LIBRARY : CRASH;
     else if (well && (!all || !whole))
-        o = damaged ? ACCEPTED : is_said(c.error) ? SENTENCE : WRONG;
+        o = damaged ? ACCEPTED : is_said(c.error, r->path) ? SENTENCE : WRONG;
     else if (strange || (!whole && !damaged))
         o = c.page->foreign ? LIBRARY : HALF;
     else if (well)
@@ -311,14 +312,19 @@ static enum outcome judge(const struct trace_result *r, bool killing, const char
         const bool runs = run(&again, (struct trace_fault){0}, false);
         if (!tree_read(&now, c.folder)) die("the folder cannot be read");
         bool same = true, gone = true;
-        for (size_t i = 0; i < c.made.count; i++) same = same && is_right(&c.made.files[i]);
+        const char *other = "";
+        for (size_t i = 0; i < c.made.count; i++)
+            if (!is_right(&c.made.files[i])) {
+                same = false;
+                other = c.made.files[i].path;
+            }
         for (size_t i = 0; i < now.count; i++)
             gone = gone && (tree_find(&c.before, now.files[i].path) || tree_find(&c.made, now.files[i].path) ||
                             is_workplace(now.files[i].path) || (killing && is_temporary(now.files[i].path)));
         if (!runs || !same) {
             o = RERUN;
             snprintf(why, why_size, "%s: %.200s",
-                     runs ? "a run afterwards makes other bytes" : "a run afterwards fails", said);
+                     runs ? "a run afterwards makes other bytes" : "a run afterwards fails", runs ? other : said);
         } else if (o == HALF && gone && whole && !left) {
             o = killing ? KILLED : judge_words(words); /* whole files that the next run takes away */
         }
