@@ -100,6 +100,17 @@ static enum status read_edits(struct scene_facts *f, struct err *err)
     return err->status;
 }
 
+/* The folders of the eyes below a film's: flat ones, and half-spheres. */
+static enum status read_eyes(struct scene_facts *f, struct err *err)
+{
+    static const char *const folders[] = {"/left", "/right", "/vr180/left", "/vr180/right"};
+    if (name_list_add_words(&f->eyes, scene_setting("EYES"), err)) return err->status;
+    const bool sphere = name_list_has(&f->eyes, "vr180"), flat = f->eyes.count > sphere;
+    for (int i = 0; !err->status && i < 4; i++)
+        if (i < 2 ? flat : sphere) name_list_add(&f->eye_folders, folders[i], strlen(folders[i]), err);
+    return err->status;
+}
+
 enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, const char *shared, const char *own,
                              const char *bin, struct err *err)
 {
@@ -122,6 +133,7 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
     const struct product_key none = {0}, held = {.views = HELD_VIEWS}, references = {.records = "lri/photos"};
     (void)(name_list_add_words(&f->products, scene_setting("PRODUCTS"), err) ||
            name_list_add_words(&f->films, scene_setting("FILMS"), err) ||
+           name_list_add_words(&f->formats, scene_setting("FILM"), err) || read_eyes(f, err) ||
            read_list(&f->photos, shared, PRODUCT_PHOTOS_MK, &none, "PHOTO_IDS", err) ||
            read_list(&bracketed, shared, PRODUCT_PHOTOS_MK, &none, "BRACKETED", err) ||
            read_list(&f->references, shared, PRODUCT_PHOTOS_MK, &references, "PHOTO_IDS", err) ||
@@ -137,8 +149,8 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
 
 void scene_facts_release(struct scene_facts *f)
 {
-    struct name_list *lists[] = {&f->products, &f->films, &f->photos, &f->references,
-                                 &f->views,    &f->held,  &f->edits,  &f->drawn_edits};
+    struct name_list *lists[] = {&f->products, &f->films,       &f->photos, &f->references,  &f->views,  &f->held,
+                                 &f->edits,    &f->drawn_edits, &f->eyes,   &f->eye_folders, &f->formats};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) name_list_release(lists[i]);
     release_groups(&f->viewpoints);
     release_groups(&f->held_viewpoints);

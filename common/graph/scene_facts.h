@@ -31,9 +31,11 @@ struct scene_facts {
     const char *bin;          /* the folder of the programs */
     char *code;               /* that of their checksums; owned */
 
-    struct name_list products; /* words of PRODUCTS */
-    struct name_list films;    /* effects of this run */
-    const char *choose;        /* "auto" or "all": the films of this run are chosen on the way; "": they are known */
+    struct name_list products;          /* words of PRODUCTS */
+    struct name_list films;             /* effects of this run */
+    struct name_list eyes, eye_folders; /* words of EYES; folders of their eyes below a film's: "/left" */
+    struct name_list formats;           /* words of FILM: further formats of the films */
+    const char *choose; /* "auto" or "all": the films of this run are chosen on the way; "": they are known */
 
     struct name_list photos;     /* ids */
     bool bracketed;              /* photos are exposures of the same views */

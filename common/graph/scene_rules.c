@@ -171,6 +171,15 @@ void rule_encodes(struct graph *g, const char *film, const struct name_list *fra
     rule_option(g, "--out", video);
 }
 
+const char *scene_item(struct graph *g, const char *eye)
+{
+    if (!*eye) return "";
+    return scene_is_half_sphere(eye) ? graph_text(g, "-vr180-%s", strrchr(eye, '/') + 1)
+                                     : graph_text(g, "-%s", strrchr(eye, '/') + 1);
+}
+
+bool scene_is_half_sphere(const char *eye) { return !strncmp(eye, "/vr180", 6); }
+
 void scene_tour_frames_read(struct graph *g, struct name_list *frames, const char *tour)
 {
     struct textfile t = {0};

@@ -62,6 +62,10 @@ void rule_encodes(struct graph *g, const char *film, const struct name_list *fra
 /* The numbers of the frames of a planned tour. */
 void scene_tour_frames_read(struct graph *g, struct name_list *frames, const char *tour);
 
+/* Of an eye's folder below that of a film: the part of a log's name, "-vr180-left"; whether it sees a half-sphere. */
+const char *scene_item(struct graph *g, const char *eye);
+bool scene_is_half_sphere(const char *eye);
+
 /* Frames come in chunks of FRAMES_PER_JOB: how many the one that begins with `first` has. */
 int scene_chunk_size(const struct scene_facts *f, const struct name_list *frames, int first);
 

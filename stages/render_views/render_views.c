@@ -18,7 +18,7 @@
 #include "stages/render_views/frames.h"
 
 struct render_job { /* the command line */
-    const char *views, *film_views, *depth, *path, *frames, *cameras, *crop, *scale, *out;
+    const char *views, *film_views, *depth, *path, *frames, *cameras, *picture, *crop, *scale, *out;
     struct cli_list names;
     struct cli_list effects; /* files */
     struct frame_part part;
@@ -54,6 +54,7 @@ static enum status render_path(const struct render_job *job, struct provenance *
         renderer_match_exposures(&scene, &job->params, err);
     if (!err->status) {
         renderer_init(&renderer, &scene, &path, &effects, &job->params);
+        renderer.half_sphere = job->picture && !strcmp(job->picture, "half_sphere");
         frames_render(&path, wanted, &renderer, job->out, prov, err);
     }
     free(wanted);
@@ -108,6 +109,10 @@ static enum status render(struct render_job *job, struct provenance *prov, struc
                        "--effects goes with --path: single cameras have no time, which the effects' keys need.");
     if (cameras && job->film_views)
         return err_set(err, ST_USAGE, "--film-views goes with --path: single cameras are rendered from all views.");
+    if (job->picture && strcmp(job->picture, "flat") != 0 && strcmp(job->picture, "half_sphere") != 0)
+        return err_set(err, ST_USAGE, "--picture %s: wanted flat or half_sphere.", job->picture);
+    if (cameras && job->picture)
+        return err_set(err, ST_USAGE, "--picture goes with --path: frames of single cameras are flat.");
     if (frame_part_read(&job->part, job->crop, job->scale, err)) return err->status;
     return cameras ? render_cameras(job, prov, err) : render_path(job, prov, err);
 }
@@ -128,6 +133,8 @@ int main(int argc, char **argv)
         CLI_STR("cameras", &job.cameras, CLI_OPTIONAL,
                 "instead of a move: folder of cameras, of which one frame each is rendered"),
         CLI_LIST("camera", &job.names, CLI_OPTIONAL, "with --cameras: render only the camera of this name"),
+        CLI_STR("picture", &job.picture, CLI_OPTIONAL,
+                "what a frame of the move shows: flat, a pinhole picture (default), or half_sphere, 180 degrees"),
         CLI_STR("crop", &job.crop, CLI_OPTIONAL, "part of the frames to render: X,Y,WIDTH,HEIGHT, px"),
         CLI_STR("scale", &job.scale, CLI_OPTIONAL, "scale factor of the frames, applied after --crop"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder of the EXR files to write, NNNN.exr or CAMERA.exr"),

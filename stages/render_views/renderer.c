@@ -2,9 +2,11 @@
 #include "stages/render_views/renderer.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "common/base/log.h"
+#include "stages/render_views/half_sphere.h"
 
 #define PARAM_STRUCT struct render_params
 const struct param render_param_table[] = {RENDER_PARAMS(PARAM_ROW) PARAM_END};
@@ -69,11 +71,44 @@ static enum status render_pinhole(void *ctx, const struct view *camera, struct r
     return err->status || !r->options.offline ? err->status : fill_path_frame(&r->fill, r->frame, camera, out, err);
 }
 
+/* Fills the holes of a face, except those beyond the photos. */
+static enum status fill_within_photos(struct renderer *r, const struct view *camera, struct rendered_frame *out,
+                                      struct err *err)
+{
+    const struct hole_photos photos = photos_of(r, camera);
+    const size_t pixels = (size_t)out->width * (size_t)out->height;
+    uint8_t *beyond = malloc(pixels);
+    if (!beyond) return err_nomem(err, "the holes of a frame", pixels);
+    if (!hole_find_overhang(beyond, out, &photos, err) && out->hole_fraction < 1)
+        hole_fill(out, &photos, &r->depth.soft, r->depth.sigma, r->fill_diameter, err);
+    for (size_t p = 0; !err->status && p < pixels; p++) {
+        if (!beyond[p]) continue;
+        memset(out->rgba + 4 * p, 0, 4 * sizeof *out->rgba);
+        out->z[p] = 0;
+    }
+    free(beyond);
+    return err->status;
+}
+
+/* A face of a half-sphere. */
+static enum status render_face(void *ctx, const struct view *camera, struct rendered_frame *out, struct err *err)
+{
+    struct renderer *r = ctx;
+    struct layer_render_options options = r->options;
+    options.fill_diameter = 0;
+    if (layer_render(out, r->scene, camera, &options, err) || fill_within_photos(r, camera, out, err))
+        return err->status;
+    photo_exposures_apply(&r->scene->exposures, &r->scene->mesh, camera, out);
+    effects_apply(r->effects, r->path->frames[r->frame].time, camera, out);
+    return ST_OK;
+}
+
 enum status renderer_frame(struct renderer *r, int frame, struct rendered_frame *out, struct err *err)
 {
     const struct path_frame *f = &r->path->frames[frame];
 
     r->frame = frame;
+    if (r->half_sphere) return half_sphere_render(out, &f->camera, render_face, r, err);
     if (r->options.offline)
         aperture_render(out, &f->camera, f->aperture, f->focus, &r->aperture, render_pinhole, r, NULL, err);
     else if (!render_pinhole(r, &f->camera, out, err))

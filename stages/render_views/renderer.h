@@ -11,6 +11,8 @@
 #ifndef REMODEL_RENDER_VIEWS_RENDERER_H
 #define REMODEL_RENDER_VIEWS_RENDERER_H
 
+#include <stdbool.h>
+
 #include "common/film/effects.h"
 #include "common/layers/layer_render.h"
 #include "stages/render_views/aperture.h"
@@ -54,7 +56,8 @@ struct renderer {
     int fill_diameter;
     struct fill_path fill;
     struct defocus defocus;
-    int frame; /* being rendered */
+    int frame;        /* being rendered */
+    bool half_sphere; /* set by the caller: frames of the path are half-spheres */
 };
 
 /* Brings the scene's photos to one exposure if params say so; before renderer_init(). */
@@ -62,7 +65,8 @@ enum status renderer_match_exposures(struct layer_scene *scene, const struct ren
 /* scene, path and effects must outlive the renderer; path may be NULL, effects empty. */
 void renderer_init(struct renderer *r, const struct layer_scene *scene, const struct camera_path *path,
                    const struct effects *effects, const struct render_params *params);
-/* Renders frame `frame` (from 0) of the path. The result does not depend on frames rendered before. */
+/* Renders frame `frame` (from 0) of the path. A half-sphere has no depth of field, and is filled only within what the
+ * photos show: all around stays empty. The result does not depend on frames rendered before. */
 enum status renderer_frame(struct renderer *r, int frame, struct rendered_frame *out, struct err *err);
 /* Renders a single pinhole picture, without effects. */
 enum status renderer_camera(struct renderer *r, const struct view *camera, struct rendered_frame *out, struct err *err);

@@ -2,12 +2,15 @@
  * rendered. A film of keys may go anywhere, so it is rendered from all views and has no layers but its own. */
 #include "common/graph/scene_rules.h"
 
-static void frames_rule(struct graph *g, const char *effect, const struct name_list *frames, int first, int count)
+/* below: the folder of an eye below that of the film, or "". */
+static void frames_rule(struct graph *g, const char *effect, const char *below, const struct name_list *frames,
+                        int first, int count)
 {
-    const char *film = graph_text(g, "parallax/%s", effect), *effects = PATH(g, EFFECTS, .film = film);
+    const char *of_effect = graph_text(g, "parallax/%s", effect), *film = graph_text(g, "%s%s", of_effect, below);
+    const char *effects = PATH(g, EFFECTS, .film = of_effect);
     const bool keyed = graph_scene_file(g, graph_text(g, "keyframes/%s.txt", effect)) != NULL;
     const char *layers = keyed ? NULL : graph_scene_file(g, "effects.txt");
-    graph_piece(g, "%s-%s", effect, frames->names[first]);
+    graph_piece(g, "%s%s-%s", effect, scene_item(g, below), frames->names[first]);
     for (int i = first; i < first + count; i++) {
         const char *frame = PATH(g, FRAME, .film = film, .frame = frames->names[i]);
         rule_makes(g, frame);
@@ -22,6 +25,7 @@ static void frames_rule(struct graph *g, const char *effect, const struct name_l
     if (!keyed) rule_after(g, graph_own(g, "stamp/film_views.txt"));
     rule_option(g, "--path", graph_own(g, film));
     if (!keyed) rule_option(g, "--film-views", PATH(g, FILM_VIEWS));
+    if (scene_is_half_sphere(below)) rule_option(g, "--picture", "half_sphere");
     rule_option(g, "--out", FOLDER(g, FRAME, .film = film, .frame = ""));
     rule_stale(g, STALE_FRAMES);
 }
@@ -46,15 +50,17 @@ static void heldout_rule(struct graph *g, const struct name_list *held, int firs
 
 RULES(render_views)
 {
-    graph_step(g, "frames", STEP_WIDE, "path");
+    graph_step(g, "frames", STEP_WIDE, "path eyes");
     graph_goal(g, "frames", NULL);
     graph_goal(g, "heldout", NULL);
     for (int e = 0; e < f->films.count; e++) {
         struct name_list frames = {0};
         const char *film = graph_text(g, "parallax/%s", f->films.names[e]);
         name_list_read(&frames, PATH(g, FRAMES_MK, .film = film), "FRAMES", graph_err(g));
-        for (int i = 0; i < frames.count; i += f->frames_per_job)
-            frames_rule(g, f->films.names[e], &frames, i, scene_chunk_size(f, &frames, i));
+        for (int k = -1; k < f->eye_folders.count; k++)
+            for (int i = 0; i < frames.count; i += f->frames_per_job)
+                frames_rule(g, f->films.names[e], k < 0 ? "" : f->eye_folders.names[k], &frames, i,
+                            scene_chunk_size(f, &frames, i));
         name_list_release(&frames);
     }
     for (int i = 0; i < f->held.count; i += f->frames_per_job)
