@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -83,6 +84,7 @@ static void add_codec(struct command *c, const struct frame_quality *q, const st
     } else if (!strcmp(format->name, "av1")) {
         snprintf(c->crf, sizeof c->crf, "%d", (q->crf * 63 + 25) / 51); /* its scale ends at 63 */
         snprintf(c->preset, sizeof c->preset, "%d", av1_preset(q->preset));
+        setenv("SVT_LOG", "1", 0); /* errors only; it does not heed ffmpeg's -loglevel */
         ADD(c, "-preset", c->preset, "-crf", c->crf, "-svtav1-params", THREADS_OF("lp"));
     } else {
         ADD(c, "-profile:v", "hq", "-vendor", "apl0", "-threads", ENCODER_THREADS);

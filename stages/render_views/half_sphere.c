@@ -2,7 +2,7 @@
  *
  * The front face is N x N pixels, the four others are the halves next to it. Their pixels are smaller than those of the
  * equirectangular picture, by 1.6 in the middle of a face and 3.1 at its corners, so each pixel is the mean of 2 x 2
- * directions, interpolated linearly in their faces. Depth and holes are those of the nearest pixel: means of depths
+ * directions, interpolated linearly in their faces, which overlap by a pixel. Depth and holes are those of the nearest pixel: means of depths
  * would lie between surfaces. */
 #include "stages/render_views/half_sphere.h"
 
@@ -10,7 +10,7 @@
 
 #include "common/base/parallel.h"
 
-enum { FACES = 5, SAMPLES = 2 };
+enum { FACES = 5, SAMPLES = 2, MARGIN = 1 };
 
 /* Axes of the faces in the camera's frame: right, down, forward. */
 static const struct mat3 face_from_cam[FACES] = {
@@ -34,6 +34,10 @@ static struct view face_camera(const struct view *camera, int face)
     if (face == 2) v.cx = n - half;
     if (face == 3) v.cy = 0;
     if (face == 4) v.cy = n - half;
+    v.width += 2 * MARGIN;
+    v.height += 2 * MARGIN;
+    v.cx += MARGIN;
+    v.cy += MARGIN;
     return v;
 }
 
