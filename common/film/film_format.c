@@ -7,7 +7,7 @@
  * with the constants of BT.709, or of BT.2020 (non-constant luminance) for films of high dynamic range. Chroma lies on
  * the left luma column of its pair, and between the two rows of a 4:2:0 pair: weights 1 2 1 across, 1 1 down.
  *
- * High dynamic range [BT.2100]. Radiance goes to the primaries of BT.2020 [BT.2087] and times FILM_WHITE becomes light
+ * High dynamic range [ITU 2018]. Radiance goes to the primaries of BT.2020 [ITU 2015] and times FILM_WHITE becomes light
  * of the display, F, in cd/m2.
  *   PQ    E' = ((c1 + c2 Y^m1) / (1 + c3 Y^m1))^m2, Y = F / 10000
  *   HLG   is a signal of the scene, E' = OETF(E); E is the light whose rendering by the system's gamma (1.2 on a display

@@ -1,7 +1,7 @@
 /* film_format.h - the formats of films: codec, colour and samples; and the signal of a picture in them.
  *
  * Pictures are scene-linear, with Rec.709 primaries and 1 for the white of an 8-bit picture. A film of high dynamic
- * range shows this white at FILM_WHITE cd/m2, the reference white of [BT.2408]. See film_format.c. */
+ * range shows this white at FILM_WHITE cd/m2, the reference white of [ITU 2023]. See film_format.c. */
 #ifndef REMODEL_FILM_FORMAT_H
 #define REMODEL_FILM_FORMAT_H
 
@@ -30,7 +30,7 @@ const struct film_format *film_format_find(const char *name);
 /* All names, as "h264, av1, ...". */
 const char *film_format_names(void);
 
-/* Signals of light, 0 to 1 [BT.2100]; f: cd/m2. */
+/* Signals of light, 0 to 1 [ITU 2018]; f: cd/m2. */
 double film_pq_from_light(double f);
 /* The signal of a grey. */
 double film_hlg_from_light(double f);
@@ -41,7 +41,7 @@ size_t film_format_bytes(const struct film_format *format, int width, int height
 enum status film_format_signal(const struct film_format *format, const struct image *linear, double peak, void *out,
                                struct err *err);
 
-struct film_light {           /* of a film in PQ, cd/m2 [CTA-861.3] */
+struct film_light {           /* of a film in PQ, cd/m2 [CTA 2015] */
     double max_cll, max_fall; /* maximum of a pixel; of the mean of a frame; each of max(R, G, B) */
 };
 /* Takes a picture into account; for film_format_signal() with this peak. */

@@ -65,7 +65,7 @@ static void add_x265(struct command *c, const struct frame_quality *q, enum film
                                   "pools") ":frame-threads=1:repeat-headers=1:"
                                            "colorprim=%s:transfer=%s:colormatrix=%s:range=limited:chromaloc=0",
                               primaries_of(curve), transfer_of(curve), matrix_of(curve));
-    /* the mastering display: primaries and white of BT.2020, in 0.00002; light in 0.0001 cd/m2 [SMPTE ST 2086] */
+    /* the mastering display: primaries and white of BT.2020, in 0.00002; light in 0.0001 cd/m2 [SMPTE 2018] */
     if (curve == FILM_PQ && used > 0 && used < WORD)
         snprintf(c->codec + used, sizeof c->codec - (size_t)used,
                  ":hdr10=1:hdr10-opt=1:master-display=G(8500,39850)B(6550,2300)R(35400,14600)WP(15635,16450)L(%.0f,1):"

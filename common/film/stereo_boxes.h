@@ -1,5 +1,5 @@
 /* stereo_boxes.h - says in an MP4 or QuickTime file that a picture holds those of two eyes: spherical video, version 2
- * [Spherical V2]. ffmpeg 5 cannot write these boxes from raw frames. */
+ * [Google 2017]. ffmpeg 5 cannot write these boxes from raw frames. */
 #ifndef REMODEL_STEREO_BOXES_H
 #define REMODEL_STEREO_BOXES_H
 

@@ -65,11 +65,19 @@ struct tour_card {    /* a film of a walk through the rooms */
     long long bytes;
 };
 
+struct film_kind { /* the film for two eyes, or in another format */
+    char name[64]; /* "vr180-hlg" */
+    char *file;    /* owned */
+    long long bytes;
+};
+
 struct effect_card {
     char name[256];
     struct camera_path path; /* frame_count 0: missing, or it cannot be read */
     char *video;             /* file name, owned; NULL: not made */
     long long video_bytes;
+    struct film_kind *kinds; /* by name; owned */
+    int kind_count;
     double *holes, *unfilled; /* of each frame: share of its pixels before and after filling; -1: unknown */
     int frames_found;
     struct picture poster; /* the first frame */

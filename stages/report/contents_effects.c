@@ -80,6 +80,44 @@ static enum status find_video(char **video, long long *bytes, const char *folder
     return (*video = strdup(path)) ? ST_OK : err_nomem(err, "a file name", strlen(path));
 }
 
+/* Adds a file "video-NAME.mp4" or ".mov"; others are left out. */
+static enum status add_kind(struct effect_card *e, const char *folder, const char *film, const char *file,
+                            struct err *err)
+{
+    struct film_kind kind = {.bytes = 0};
+    char path[PATH_SIZE];
+    struct stat s;
+    const char *dot = strrchr(file, '.');
+    const size_t length = dot ? (size_t)(dot - file) : 0;
+    if (strncmp(file, "video-", 6) || !dot || (strcmp(dot, ".mp4") && strcmp(dot, ".mov")) ||
+        length - 6 >= sizeof kind.name)
+        return ST_OK;
+    snprintf(path, sizeof path, "%s/%s/%s", folder, film, file);
+    if (stat(path, &s) || !S_ISREG(s.st_mode) || s.st_size == 0) return ST_OK;
+    memcpy(kind.name, file + 6, length - 6);
+    kind.bytes = s.st_size;
+    if (!(kind.file = strdup(path))) return err_nomem(err, "a file name", strlen(path));
+    if (array_append(&e->kinds, (size_t)e->kind_count, sizeof *e->kinds, "films", err))
+        free(kind.file);
+    else
+        e->kinds[e->kind_count++] = kind;
+    return err->status;
+}
+
+static enum status read_kinds(struct effect_card *e, const char *folder, const char *film, struct err *err)
+{
+    struct dirent **names = NULL;
+    char path[PATH_SIZE];
+    snprintf(path, sizeof path, "%s/%s", folder, film);
+    const int count = scandir(path, &names, NULL, alphasort);
+    for (int i = 0; i < count; i++) {
+        if (!err->status) add_kind(e, folder, film, names[i]->d_name, err);
+        free(names[i]);
+    }
+    free(names);
+    return err->status;
+}
+
 /* Made on request, so that its absence is not noted. */
 static enum status read_pan(struct contents *c, struct effect_card *e, const char *folder, const char *film,
                             struct err *err)
@@ -96,7 +134,8 @@ static enum status read_effect(struct contents *c, struct effect_card *e, const 
     struct err problem = ERR_INIT;
     char path[PATH_SIZE];
 
-    if (find_video(&e->video, &e->video_bytes, folder, PRODUCT_VIDEO, film, err)) return err->status;
+    if (find_video(&e->video, &e->video_bytes, folder, PRODUCT_VIDEO, film, err) || read_kinds(e, folder, film, err))
+        return err->status;
     if (!e->video && contents_note(c, err, "There is no video of %s yet.", e->name)) return err->status;
     snprintf(path, sizeof path, "%s/%s", folder, film);
     if (camera_path_read(&e->path, path, NULL, &problem))
@@ -191,6 +230,8 @@ void effect_card_release(struct effect_card *e)
     camera_path_release(&e->path);
     picture_release(&e->poster);
     picture_release(&e->pan.poster);
+    for (int i = 0; i < e->kind_count; i++) free(e->kinds[i].file);
+    free(e->kinds);
     free(e->video);
     free(e->pan.video);
     free(e->validity);

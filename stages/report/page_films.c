@@ -1,6 +1,7 @@
 /* page_films.c - the films of a scene, and the rooms from above, for people. */
 #include "stages/report/page_parts.h"
 
+#include <ctype.h>
 #include <string.h>
 
 static void put_megabytes(FILE *to, long long bytes)
@@ -25,6 +26,48 @@ static const char *move_words(const char *name)
     return "A film from the photographs";
 }
 
+/* "side_by_side-hlg" as "side by side, HLG". */
+static void put_kind_words(FILE *to, const char *name)
+{
+    static const char *const words[][2] = {
+        {"side_by_side", "two eyes side by side"},
+        {"top_bottom", "two eyes, one above the other"},
+        {"anaglyph", "for red and cyan glasses"},
+        {"vr180", "VR180"},
+        {"h264", "H.264"},
+        {"av1", "AV1"},
+        {"prores", "ProRes"},
+        {"hlg", "HDR (HLG)"},
+        {"pq", "HDR (PQ)"},
+    };
+    for (const char *part = name; *part;) {
+        const size_t length = strcspn(part, "-");
+        const char *text = NULL;
+        for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+            if (strlen(words[i][0]) == length && !strncmp(part, words[i][0], length)) text = words[i][1];
+        if (part != name) fputs(", ", to);
+        if (text)
+            fputs(text, to);
+        else
+            for (size_t i = 0; i < length; i++) fprintf(to, isalnum((unsigned char)part[i]) ? "%c" : "_", part[i]);
+        part += length + (part[length] == '-');
+    }
+}
+
+/* The film for two eyes, or in other formats: files that browsers may not play, so links. */
+static void put_kinds(struct page *page, const struct contents *c, const struct effect_card *e)
+{
+    FILE *to = page->to;
+    for (int i = 0; i < e->kind_count; i++) {
+        fputs("<br><a href=\"", to);
+        page_put_product(page, c->folder, e->kinds[i].file);
+        fputs("\">", to);
+        put_kind_words(to, e->kinds[i].name);
+        fputs("</a>", to);
+        put_megabytes(to, e->kinds[i].bytes);
+    }
+}
+
 static enum status put_move(struct page *page, const struct contents *c, const struct effect_card *e, struct err *err)
 {
     FILE *to = page->to;
@@ -46,6 +89,7 @@ static enum status put_move(struct page *page, const struct contents *c, const s
     if (e->path.frame_count && e->path.fps > 0)
         fputs(" · ", to), page_put_seconds(to, e->path.frame_count / e->path.fps);
     put_megabytes(to, e->video_bytes);
+    put_kinds(page, c, e);
     fputs("</figcaption></figure>\n", to);
     return ST_OK;
 }

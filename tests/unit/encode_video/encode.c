@@ -247,7 +247,7 @@ static void ramps_of_high_dynamic_range_have_the_codes_of_their_light(void **sta
         assert_true(labs(codes[i][0] - lround(wanted)) <= 1);
         assert_true(abs(codes[i][1] - 512) <= 1 && abs(codes[i][2] - 512) <= 1);
     }
-    assert_true(abs(codes[2][0] - 573) <= 1); /* white, 203 cd/m2: 58 % [BT.2408] */
+    assert_true(abs(codes[2][0] - 573) <= 1); /* white, 203 cd/m2: 58 % [ITU 2023] */
     run_command(text, sizeof text, "ffprobe -v error -show_frames -read_intervals '%%+#1' %s", scratch_path("pq.mp4"));
     assert_contains(text, "Mastering display metadata");
     assert_contains(text, "max_luminance=10000000/10000");

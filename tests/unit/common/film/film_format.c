@@ -11,7 +11,7 @@ static void pq_has_the_published_values(void **state)
     (void)state;
     assert_true(film_pq_from_light(10000) == 1);
     assert_float_equal(film_pq_from_light(0), 0, 1e-6);
-    /* [BT.2408, table 1] in per cent, and the light of half the signal */
+    /* [ITU 2023, table 1] in per cent, and the light of half the signal */
     assert_float_equal(film_pq_from_light(203), 0.5807, 5e-5);
     assert_float_equal(film_pq_from_light(100), 0.5081, 5e-5);
     assert_float_equal(film_pq_from_light(1000), 0.7518, 5e-5);
