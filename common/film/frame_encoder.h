@@ -10,7 +10,7 @@
 
 #include "common/base/outfile.h"
 #include "common/base/process.h"
-#include "common/film/film_format.h"
+#include "common/film/film_signal.h"
 #include "common/film/stereo_boxes.h"
 
 struct frame_quality {

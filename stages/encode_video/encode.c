@@ -71,7 +71,7 @@ static const struct image *read_frame(struct encode_job *job, int frame, struct 
     if (read_eye(&job->left, job->path, frame, s->frames, err)) return NULL;
     if (!s->right) return &job->left;
     if (read_eye(&job->right, job->path, frame, s->right, err)) return NULL;
-    film_eyes_picture(&job->picture, &job->left, &job->right, s->eyes);
+    eyes_picture(&job->picture, &job->left, &job->right, s->eyes);
     return &job->picture;
 }
 
@@ -131,8 +131,8 @@ enum status encode_frames(const struct camera_path *path, const struct encode_so
             "the path again.",
             width, height);
     job.format = quality.format = source->format ? source->format : film_format_find("h264");
-    if (source->right) film_eyes_size(source->eyes, &width, &height);
-    quality.stereo = source->right ? film_eyes_mode(source->eyes) : STEREO_NONE;
+    if (source->right) eyes_size(source->eyes, &width, &height);
+    quality.stereo = source->right ? eyes_mode(source->eyes) : STEREO_NONE;
     quality.half_sphere = source->eyes == FILM_VR180;
     if (!job_init(&job, width, height, err)) encode(&job, &quality, width, height, out, err);
     image_release(&job.left);

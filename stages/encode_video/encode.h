@@ -4,7 +4,7 @@
 
 #include "common/base/param.h"
 #include "common/capture/camera_path.h"
-#include "common/film/film_format.h"
+#include "common/film/film_signal.h"
 #include "stages/encode_video/eyes_picture.h"
 
 #define ENCODE_PARAMS(X)                                                                                      \

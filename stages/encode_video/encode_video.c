@@ -17,7 +17,7 @@ static enum status run(const struct job *job, struct err *err)
     struct camera_path path = {0};
     struct encode_source source = {job->frames, job->right, FILM_ONE_EYE, NULL};
     if (!job->eyes != !job->right) return err_set(err, ST_USAGE, "wanted both --eyes and --right, or neither.");
-    if (job->eyes) source.eyes = film_eyes_find(job->eyes);
+    if (job->eyes) source.eyes = eyes_find(job->eyes);
     if (job->eyes && (source.eyes == FILM_EYES || source.eyes == FILM_ONE_EYE))
         return err_set(err, ST_USAGE, "--eyes %s: wanted side_by_side, top_bottom, anaglyph or vr180.", job->eyes);
     if (job->film && !(source.format = film_format_find(job->film)))

@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-enum film_eyes film_eyes_find(const char *name)
+enum film_eyes eyes_find(const char *name)
 {
     static const char *const names[FILM_EYES] = {"one", "side_by_side", "top_bottom", "anaglyph", "vr180"};
     int i = 0;
@@ -15,16 +15,16 @@ enum film_eyes film_eyes_find(const char *name)
     return (enum film_eyes)i;
 }
 
-enum stereo_mode film_eyes_mode(enum film_eyes eyes)
+enum stereo_mode eyes_mode(enum film_eyes eyes)
 {
     if (eyes == FILM_SIDE_BY_SIDE || eyes == FILM_VR180) return STEREO_SIDE_BY_SIDE;
     return eyes == FILM_TOP_BOTTOM ? STEREO_TOP_BOTTOM : STEREO_NONE;
 }
 
-void film_eyes_size(enum film_eyes eyes, int *width, int *height)
+void eyes_size(enum film_eyes eyes, int *width, int *height)
 {
-    if (film_eyes_mode(eyes) == STEREO_SIDE_BY_SIDE) *width *= 2;
-    if (film_eyes_mode(eyes) == STEREO_TOP_BOTTOM) *height *= 2;
+    if (eyes_mode(eyes) == STEREO_SIDE_BY_SIDE) *width *= 2;
+    if (eyes_mode(eyes) == STEREO_TOP_BOTTOM) *height *= 2;
 }
 
 /* Columns: R G B of the left eye, then of the right one. */
@@ -47,7 +47,7 @@ static void mix(struct image *out, const struct image *left, const struct image 
         }
 }
 
-void film_eyes_picture(struct image *out, const struct image *left, const struct image *right, enum film_eyes eyes)
+void eyes_picture(struct image *out, const struct image *left, const struct image *right, enum film_eyes eyes)
 {
     const size_t row = 3 * (size_t)left->width;
     if (eyes == FILM_ANAGLYPH) {
@@ -55,7 +55,7 @@ void film_eyes_picture(struct image *out, const struct image *left, const struct
         return;
     }
     for (int y = 0; y < left->height; y++) {
-        const bool below = film_eyes_mode(eyes) == STEREO_TOP_BOTTOM;
+        const bool below = eyes_mode(eyes) == STEREO_TOP_BOTTOM;
         memcpy(image_at(out, 0, y), image_at(left, 0, y), row * sizeof *out->data);
         memcpy(below ? image_at(out, 0, left->height + y) : image_at(out, left->width, y), image_at(right, 0, y),
                row * sizeof *out->data);

@@ -15,11 +15,11 @@ enum film_eyes {
 };
 
 /* The kind of that name, or FILM_EYES. */
-enum film_eyes film_eyes_find(const char *name);
-enum stereo_mode film_eyes_mode(enum film_eyes eyes);
-void film_eyes_size(enum film_eyes eyes, int *width, int *height); /* of the picture, from that of an eye's */
+enum film_eyes eyes_find(const char *name);
+enum stereo_mode eyes_mode(enum film_eyes eyes);
+void eyes_size(enum film_eyes eyes, int *width, int *height); /* of the picture, from that of an eye's */
 
-/* Fills `out`, of film_eyes_size(), from two scene-linear pictures of 3 channels and one size. */
-void film_eyes_picture(struct image *out, const struct image *left, const struct image *right, enum film_eyes eyes);
+/* Fills `out`, of eyes_size(), from two scene-linear pictures of 3 channels and one size. */
+void eyes_picture(struct image *out, const struct image *left, const struct image *right, enum film_eyes eyes);
 
 #endif

@@ -2,7 +2,7 @@
  * their stages. */
 #include <string.h>
 
-#include "common/film/film_format.h"
+#include "common/film/film_signal.h"
 #include "common/graph/scene_rules.h"
 
 static void video_rule(struct graph *g, const char *item, const char *film, const char *video, bool flat)

@@ -1,4 +1,5 @@
-/* plan_path.c - plans a camera move that shows a scene's depth but not its holes, or computes a keyframed film.
+/* plan_path.c - plans a camera move that shows a scene's depth but not its holes, or computes a film of keys or of given
+ * cameras.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         for a move:
@@ -10,6 +11,8 @@
  *         MOVES/EFFECT/path.txt, path/NAME.txt,         with --moves: the moves that it uses and their effect layers
  *         effects.txt
  *         VIEWS/lenses.txt, RECORDS/ID.txt              with --records: the orientation of the photos
+ *         for a film of given cameras:
+ *         CAMERAS                                       with --cameras: transforms.json, or a folder of COLMAP text
  * writes  OUT/path/{cameras,images,points3D}.txt        the frames' cameras
  *         OUT/effects.txt                               the film's effect layers, even if there are none
  *         OUT/path.txt                                  scores and times
@@ -29,6 +32,7 @@
 #include "common/film/film_lens.h"
 #include "common/film/film_views.h"
 #include "common/product/product.h"
+#include "stages/plan_path/given_path.h"
 #include "stages/plan_path/keyframed_film.h"
 #include "stages/plan_path/path_export.h"
 #include "stages/plan_path/plan_move.h"
@@ -98,7 +102,7 @@ static enum status read_views(struct camera_set *set, struct vec3 **ups, const c
 }
 
 struct job { /* the command line */
-    const char *views, *film_views, *records, *depth, *validity, *subjects, *keyframes, *moves, *effect, *out;
+    const char *views, *film_views, *records, *depth, *validity, *subjects, *keyframes, *moves, *cameras, *effect, *out;
     struct plan_params params;
 };
 
@@ -133,6 +137,21 @@ static enum status make_film(const struct job *job, struct provenance *prov, str
     camera_set_release(&set);
     free(order);
     free(ups);
+    return err->status;
+}
+
+static enum status make_given(const struct job *job, struct provenance *prov, struct err *err)
+{
+    struct camera_set set = {0};
+    struct camera_path path = {0};
+    struct effects none = {0};
+    if (!camera_set_read(&set, job->views, prov, err) &&
+        !given_path_read(&path, job->cameras, job->effect, job->params.fps, &set, prov, err) &&
+        !write_film(&path, &none, job->out, prov, err))
+        log_note("%d frames of %d x %d, as given", path.frame_count, path.frames[0].camera.width,
+                 path.frames[0].camera.height);
+    camera_path_release(&path);
+    camera_set_release(&set);
     return err->status;
 }
 
@@ -171,11 +190,13 @@ static enum status run(const struct job *job, struct provenance *prov, struct er
 {
     const bool move = job->depth && job->validity && !job->keyframes && !job->moves;
     const bool keys = job->keyframes && !job->depth && !job->validity && !job->subjects && !job->film_views;
-    if (!move && !keys)
+    const bool given = job->cameras && !job->depth && !job->validity && !job->subjects && !job->film_views &&
+                       !job->keyframes && !job->moves && !job->records;
+    if (job->cameras ? !given : !move && !keys)
         return err_set(err, ST_USAGE,
-                       "wanted --depth with --validity (and --subjects, --film-views) for a move, or --keyframes (and "
-                       "--moves, --records) for a "
-                       "keyframed film.");
+                       "wanted --depth with --validity (and --subjects, --film-views) for a move, --keyframes (and "
+                       "--moves, --records) for a keyframed film, or --cameras for a film of given cameras.");
+    if (given) return make_given(job, prov, err);
     return job->keyframes ? make_film(job, prov, err) : make_move(job, prov, err);
 }
 
@@ -183,7 +204,8 @@ int main(int argc, char **argv)
 {
     struct job job = {.params = PLAN_PARAMS_DEFAULT};
     const struct cli_opt opts[] = {
-        CLI_ABOUT("Plans a camera move that shows a scene's depth but not its holes, or computes a keyframed film."),
+        CLI_ABOUT("Plans a camera move that shows a scene's depth but not its holes, or computes a film of keys or of "
+                  "given cameras."),
         CLI_STR("views", &job.views, CLI_REQUIRED, "folder of cameras"),
         CLI_STR("effect", &job.effect, CLI_REQUIRED,
                 "effect of the taxonomy, such as dolly_in+dim, or name of the keyframed film"),
@@ -194,6 +216,8 @@ int main(int argc, char **argv)
         CLI_STR("subjects", &job.subjects, CLI_OPTIONAL, "file of the scene's subjects, for a move that needs any"),
         CLI_STR("keyframes", &job.keyframes, CLI_OPTIONAL, "file of a keyframed film"),
         CLI_STR("moves", &job.moves, CLI_OPTIONAL, "folder of the planned moves that a keyframed film may use"),
+        CLI_STR("cameras", &job.cameras, CLI_OPTIONAL,
+                "cameras of the frames: transforms.json, or a folder of cameras.txt and images.txt"),
         CLI_STR("records", &job.records, CLI_OPTIONAL,
                 "folder of the photos' records, which make a keyframed film upright"),
         CLI_STR("out", &job.out, CLI_REQUIRED, "folder to write the path into"),

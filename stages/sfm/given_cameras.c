@@ -9,8 +9,6 @@
 #include "common/capture/photo_match.h"
 #include "common/capture/sfm_model_parts.h"
 
-#define MAX_OFF 1e-3 /* cosine of two axes, and relative difference of their lengths */
-
 enum status given_lens_camera(struct camera *c, const struct given_lens *lens, const char *where, struct err *err)
 {
     const double *k = lens->k, *p = lens->p;
@@ -47,17 +45,6 @@ int given_cameras_find(const struct sfm_model *m, const struct camera *c)
     return -1;
 }
 
-static bool is_turned(const struct vec3 axes[3])
-{
-    const double length = vec3_length(axes[0]);
-    if (!isfinite(length) || !(length > 1e-9)) return false;
-    for (int i = 0; i < 3; i++) {
-        if (!(fabs(vec3_length(axes[i]) / length - 1) < MAX_OFF)) return false;
-        if (!(fabs(vec3_dot(axes[i], axes[(i + 1) % 3])) < MAX_OFF * length * length)) return false;
-    }
-    return vec3_dot(vec3_cross(axes[0], axes[1]), axes[2]) > 0;
-}
-
 enum status given_panorama_lens(struct camera *c, const char *name, const struct photo_list *photos, const char *where,
                                 struct err *err)
 {
@@ -74,15 +61,7 @@ enum status given_cameras_add(struct sfm_model *m, const char *name, const struc
 {
     struct mat3 turn; /* camera from world */
     int at = given_cameras_find(m, c);
-    if (!is_turned(axes))
-        return err_set(err, ST_DATA,
-                       "%s: found a pose that is no rotation, wanted three perpendicular axes of one length.", where);
-    for (int i = 0; i < 3; i++) {
-        const struct vec3 axis = vec3_normalize(axes[i]);
-        turn.m[i][0] = axis.x;
-        turn.m[i][1] = axis.y;
-        turn.m[i][2] = axis.z;
-    }
+    if (pose_turn_from_axes(&turn, axes, where, err)) return err->status;
     if (at < 0) {
         if (array_append(&m->cameras, (size_t)m->camera_count, sizeof *m->cameras, "cameras", err)) return err->status;
         at = m->camera_count++;

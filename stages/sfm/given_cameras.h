@@ -6,15 +6,7 @@
 
 #include "common/capture/photo_list.h"
 #include "common/capture/sfm_model.h"
-
-/* A lens of the Brown-Conrady model, or a fisheye: the radius is the angle from the axis times 1 + k1 angle^2 + ...
- * Coefficients in OpenCV's order and signs. */
-struct given_lens {
-    int width, height; /* px */
-    double fx, fy, cx, cy;
-    double k[4], p[2];
-    bool fisheye;
-};
+#include "common/capture/transforms_file.h"
 
 /* The camera model that has these coefficients. ST_DATA, with `where` in front: a fourth radial coefficient, which no
  * model has, or no camera. */

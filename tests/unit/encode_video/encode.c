@@ -313,7 +313,7 @@ static void two_eyes_become_one_picture_that_says_so(void **state)
         frame_make(name, W, H, dark);
     }
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
-        const struct encode_source source = {scratch_path("left"), scratch_path("right"), film_eyes_find(kinds[i].eyes),
+        const struct encode_source source = {scratch_path("left"), scratch_path("right"), eyes_find(kinds[i].eyes),
                                              NULL};
         assert_ok(encode_frames(&path, &source, scratch_path("eyes.mp4"), &params, &err), err);
         run_command(text, sizeof text, "ffprobe -v error -count_frames -show_streams -of default=nk=0 %s",
@@ -341,7 +341,7 @@ static void anaglyphs_keep_greys_that_both_eyes_see(void **state)
     assert_ok(image_init(&right, 2, 1, 3, &err), err);
     assert_ok(image_init(&out, 2, 1, 3, &err), err);
     for (int k = 0; k < 6; k++) left.data[k] = 0.4f, right.data[k] = k < 3 ? 0.4f : 0;
-    film_eyes_picture(&out, &left, &right, FILM_ANAGLYPH);
+    eyes_picture(&out, &left, &right, FILM_ANAGLYPH);
     for (int k = 0; k < 3; k++) assert_float_equal(out.data[k], 0.4, 1e-6);
     /* what the left eye alone sees is red */
     assert_true(out.data[3] > 0.35f && out.data[4] == 0 && out.data[5] == 0);

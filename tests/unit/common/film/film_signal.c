@@ -1,6 +1,6 @@
-/* film_format.c - light has the signals and code values of BT.2100; colours keep their place; chroma lies on the left
+/* film_signal.c - light has the signals and code values of BT.2100; colours keep their place; chroma lies on the left
  * column. */
-#include "common/film/film_format.h"
+#include "common/film/film_signal.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-/* film_format.c - signals of films.
+/* film_signal.c - signals of films.
  *
  * H.264 gets 8-bit sRGB, which ffmpeg converts. All other formats get planes of 10-bit Y'CbCr in the narrow range,
  * computed here, so that a radiance has one code value whatever ffmpeg's scaler does:
@@ -13,7 +13,7 @@
  *   HLG   is a signal of the scene, E' = OETF(E); E is the light whose rendering by the system's gamma (1.2 on a display
  *         of 1000 cd/m2) is F: E = (F / 1000) (Y / 1000)^((1 - 1.2) / 1.2), Y the luminance of F
  * so both show the same picture: white has the signal 0.58 in PQ and 0.75 in HLG. */
-#include "common/film/film_format.h"
+#include "common/film/film_signal.h"
 
 #include <math.h>
 #include <stdlib.h>

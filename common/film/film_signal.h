@@ -1,9 +1,9 @@
-/* film_format.h - the formats of films: codec, colour and samples; and the signal of a picture in them.
+/* film_signal.h - the formats of films: codec, colour and samples; and the signal of a picture in them.
  *
  * Pictures are scene-linear, with Rec.709 primaries and 1 for the white of an 8-bit picture. A film of high dynamic
- * range shows this white at FILM_WHITE cd/m2, the reference white of [ITU 2023]. See film_format.c. */
-#ifndef REMODEL_FILM_FORMAT_H
-#define REMODEL_FILM_FORMAT_H
+ * range shows this white at FILM_WHITE cd/m2, the reference white of [ITU 2023]. See film_signal.c. */
+#ifndef REMODEL_FILM_SIGNAL_H
+#define REMODEL_FILM_SIGNAL_H
 
 #include <stdbool.h>
 #include <stdint.h>
