@@ -33,7 +33,9 @@ enum status transforms_file_open(struct transforms_file *t, const char *path, st
     struct file_bytes file = {0};
     json_error_t why;
     *t = (struct transforms_file){0};
-    if (file_path(t->path, path, "", "", err) || file_bytes_read(&file, path, err)) return err->status;
+    if (strlen(path) >= sizeof t->path) return err_set(err, ST_IO, "the path %.200s... is too long.", path);
+    strcpy(t->path, path);
+    if (file_bytes_read(&file, path, err)) return err->status;
     const size_t mark = file.size >= 3 && !memcmp(file.bytes, "\xEF\xBB\xBF", 3) ? 3 : 0;
     t->root = json_loadb(file.bytes + mark, file.size - mark, 0, &why);
     file_bytes_release(&file);

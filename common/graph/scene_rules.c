@@ -171,6 +171,13 @@ void rule_encodes(struct graph *g, const char *film, const struct name_list *fra
     rule_option(g, "--out", video);
 }
 
+bool scene_film_is_given(const char *film) { return scene_setting_is("GIVEN_FILM", film); }
+
+bool scene_film_is_free(struct graph *g, const char *film)
+{
+    return scene_film_is_given(film) || graph_scene_file(g, graph_text(g, "keyframes/%s.txt", film));
+}
+
 const char *scene_item(struct graph *g, const char *eye)
 {
     if (!*eye) return "";

@@ -62,6 +62,11 @@ void rule_encodes(struct graph *g, const char *film, const struct name_list *fra
 /* The numbers of the frames of a planned tour. */
 void scene_tour_frames_read(struct graph *g, struct name_list *frames, const char *tour);
 
+/* Whether a film goes its own way, whatever views a move would be made from: a film of keys (scenes/NAME/keyframes), or
+ * that of given cameras (CAMERAS). */
+bool scene_film_is_given(const char *film);
+bool scene_film_is_free(struct graph *g, const char *film);
+
 /* Of an eye's folder below that of a film: the part of a log's name, "-vr180-left"; whether it sees a half-sphere. */
 const char *scene_item(struct graph *g, const char *eye);
 bool scene_is_half_sphere(const char *eye);

@@ -7,7 +7,7 @@ static void eyes_rule(struct graph *g, const char *effect, bool half_sphere)
 {
     static const enum product_id files[] = {PRODUCT_PATH, PRODUCT_PATH_CAMERAS, PRODUCT_PATH_IMAGES,
                                             PRODUCT_PATH_POINTS};
-    const bool keyed = graph_scene_file(g, graph_text(g, "keyframes/%s.txt", effect)) != NULL;
+    const bool is_free = scene_film_is_free(g, effect);
     const char *film = graph_text(g, "parallax/%s", effect);
     const char *pair = half_sphere ? graph_text(g, "%s/vr180", film) : film, *plan = PATH(g, EYES, .film = pair);
     graph_rule(g, "%s%s", effect, half_sphere ? "-vr180" : "");
@@ -21,8 +21,8 @@ static void eyes_rule(struct graph *g, const char *effect, bool half_sphere)
     rule_needs_path(g, film);
     rule_takes_cameras(g);
     rule_takes_depth(g);
-    if (!keyed) rule_takes(g, "--film-views", PATH(g, FILM_VIEWS));
-    if (!keyed) rule_after(g, graph_own(g, "stamp/film_views.txt"));
+    if (!is_free) rule_takes(g, "--film-views", PATH(g, FILM_VIEWS));
+    if (!is_free) rule_after(g, graph_own(g, "stamp/film_views.txt"));
     rule_option(g, "--path", graph_own(g, film));
     if (half_sphere) rule_option(g, "--picture", "half_sphere");
     rule_option(g, "--out", graph_own(g, pair));

@@ -111,6 +111,17 @@ static void keyed_film_rule(struct graph *g, const char *film, const struct name
     rule_option(g, "--out", graph_own(g, film_folder(g, film)));
 }
 
+static void given_film_rule(struct graph *g, const char *film)
+{
+    graph_rule(g, "%s", film);
+    makes_film(g, film, true);
+    rule_takes_cameras(g);
+    rule_needs(g, graph_own(g, "stamp/cameras.txt")); /* as render_model/look.sh found them */
+    rule_variable(g, "--cameras", "CAMERAS");
+    rule_option(g, "--effect", film);
+    rule_option(g, "--out", graph_own(g, film_folder(g, film)));
+}
+
 RULES(plan_path)
 {
     struct name_list planned = {0}, moves = {0};
@@ -119,6 +130,10 @@ RULES(plan_path)
     for (int i = 0; i < f->films.count; i++) {
         const char *film = f->films.names[i], *keyframes = keyframes_of(g, film);
         graph_list(g, GRAPH_SHOWN, PATH(g, PATH, .film = film_folder(g, film)));
+        if (scene_film_is_given(film)) {
+            given_film_rule(g, film);
+            continue;
+        }
         if (!keyframes) {
             name_list_add_words(&planned, film, graph_err(g));
             graph_goal(g, "path", PATH(g, VALIDITY, .move = move_of(g, film)));

@@ -2,7 +2,7 @@
 
 check_render_model()
 {
-    [ -z "${REMODEL_CAMERAS-}" ] || [ -e "$REMODEL_CAMERAS/images.txt" ] ||
+    [ -z "${REMODEL_CAMERAS-}" ] || [ -n "$given" ] || [ -e "$REMODEL_CAMERAS/images.txt" ] ||
         usage "CAMERAS=$REMODEL_CAMERAS has no images.txt. Give a folder with cameras.txt and images.txt, COLMAP's text format."
     case ${REMODEL_CAMERAS_FRAME:-scene} in
     scene | model) ;;

@@ -7,5 +7,5 @@ HELP.tour := films through the rooms, of the model and of each edit
 
 ## EDIT=E: for `make remodel`, `tour` and `relight`: after this edit alone
 ## DRAW="E F": edits that these goals and plain `make` draw, usually in scene.mk (all)
-## CAMERAS=DIR: a COLMAP text model whose cameras `make remodel` draws the model and its edits from
+## CAMERAS=DIR: a COLMAP text model whose cameras `make remodel` draws the model and its edits from; with `make path`, `frames` and `video`: those of a film, or transforms.json
 ## CAMERAS_FRAME=scene|model|truth: its frame: O/views (default), the room's model, or TRUTH, which has the photos' cameras

@@ -1,5 +1,6 @@
 /* rules.c - frames of films in chunks, a process each; of a chunk only the frames that are missing or stale are
- * rendered. A film of keys may go anywhere, so it is rendered from all views and has no layers but its own. */
+ * rendered. A film of keys or of given cameras may go anywhere, so it is rendered from all views and has no layers but its
+ * own. */
 #include "common/graph/scene_rules.h"
 
 /* below: the folder of an eye below that of the film, or "". */
@@ -8,8 +9,8 @@ static void frames_rule(struct graph *g, const char *effect, const char *below, 
 {
     const char *of_effect = graph_text(g, "parallax/%s", effect), *film = graph_text(g, "%s%s", of_effect, below);
     const char *effects = PATH(g, EFFECTS, .film = of_effect);
-    const bool keyed = graph_scene_file(g, graph_text(g, "keyframes/%s.txt", effect)) != NULL;
-    const char *layers = keyed ? NULL : graph_scene_file(g, "effects.txt");
+    const bool is_free = scene_film_is_free(g, effect);
+    const char *layers = is_free ? NULL : graph_scene_file(g, "effects.txt");
     graph_piece(g, "%s%s-%s", effect, scene_item(g, below), frames->names[first]);
     for (int i = first; i < first + count; i++) {
         const char *frame = PATH(g, FRAME, .film = film, .frame = frames->names[i]);
@@ -21,10 +22,10 @@ static void frames_rule(struct graph *g, const char *effect, const char *below, 
     rule_takes(g, "--effects", layers);
     rule_takes_cameras(g);
     rule_takes_depth(g);
-    if (!keyed) rule_needs(g, PATH(g, FILM_VIEWS));
-    if (!keyed) rule_after(g, graph_own(g, "stamp/film_views.txt"));
+    if (!is_free) rule_needs(g, PATH(g, FILM_VIEWS));
+    if (!is_free) rule_after(g, graph_own(g, "stamp/film_views.txt"));
     rule_option(g, "--path", graph_own(g, film));
-    if (!keyed) rule_option(g, "--film-views", PATH(g, FILM_VIEWS));
+    if (!is_free) rule_option(g, "--film-views", PATH(g, FILM_VIEWS));
     if (scene_is_half_sphere(below)) rule_option(g, "--picture", "half_sphere");
     rule_option(g, "--out", FOLDER(g, FRAME, .film = film, .frame = ""));
     rule_stale(g, STALE_FRAMES);
