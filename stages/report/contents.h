@@ -58,11 +58,17 @@ struct pan_card { /* the same move in 2D */
     struct picture poster; /* the first frame */
 };
 
+struct flicker_card { /* of a film, relative (film_flicker.h) */
+    double middle, high;
+    bool known;
+};
+
 struct tour_card {    /* a film of a walk through the rooms */
     char change[256]; /* "": the rooms as they are */
     bool relit;       /* in the light that the change makes */
     char *video;      /* file name, owned */
     long long bytes;
+    struct flicker_card flicker;
 };
 
 struct film_kind { /* the film for two eyes, or in another format */
@@ -80,6 +86,7 @@ struct effect_card {
     int kind_count;
     double *holes, *unfilled; /* of each frame: share of its pixels before and after filling; -1: unknown */
     int frames_found;
+    struct flicker_card flicker;
     struct picture poster; /* the first frame */
     char *validity;        /* file name of the picture of valid viewpoints, owned; NULL: not made */
     struct pan_card pan;

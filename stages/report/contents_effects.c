@@ -8,6 +8,7 @@
 
 #include "common/base/array.h"
 #include "common/base/scan.h"
+#include "stages/report/film_flicker.h"
 
 enum { POSTER_HEIGHT = 540 };
 
@@ -140,7 +141,10 @@ static enum status read_effect(struct contents *c, struct effect_card *e, const 
     snprintf(path, sizeof path, "%s/%s", folder, film);
     if (camera_path_read(&e->path, path, NULL, &problem))
         return contents_note(c, err, "There is no camera path of %s. %s", e->name, problem.text);
-    return read_frames(c, e, folder, film, err) || read_pan(c, e, folder, film, err) ? err->status : ST_OK;
+    if (read_frames(c, e, folder, film, err) ||
+        film_flicker_measure(&e->flicker.middle, &e->flicker.high, &e->flicker.known, &e->path, folder, film, err))
+        return err->status;
+    return read_pan(c, e, folder, film, err);
 }
 
 /* The effects of a move share its valid viewpoints. */
@@ -189,6 +193,23 @@ enum status contents_read_effects(struct contents *c, const char *folder, struct
 
 /* ------------------------------------------------------------------------------------------------------------ tours */
 
+/* A relit walk follows the path of the same walk in the old light. */
+static enum status measure_tour(struct flicker_card *f, const char *folder, const char *film, const char *change,
+                                bool relit, struct err *err)
+{
+    struct camera_path walk = {0};
+    struct err why = ERR_INIT;
+    char path[PATH_SIZE];
+    if (relit)
+        snprintf(path, sizeof path, "%s/remodel/%s/tour", folder, change);
+    else
+        snprintf(path, sizeof path, "%s/%s", folder, film);
+    if (!camera_path_read(&walk, path, NULL, &why))
+        film_flicker_measure(&f->middle, &f->high, &f->known, &walk, folder, film, err);
+    camera_path_release(&walk);
+    return err->status;
+}
+
 /* film: the folder of the tour below the scene's */
 static enum status read_tour(struct contents *c, const char *folder, const char *film, const char *change, bool relit,
                              struct err *err)
@@ -199,6 +220,10 @@ static enum status read_tour(struct contents *c, const char *folder, const char 
     if (!path_is_folder(path) || find_video(&tour.video, &tour.bytes, folder, PRODUCT_VIDEO, film, err) || !tour.video)
         return err->status;
     snprintf(tour.change, sizeof tour.change, "%s", change);
+    if (measure_tour(&tour.flicker, folder, film, change, relit, err)) {
+        free(tour.video);
+        return err->status;
+    }
     if (array_append(&c->tours, (size_t)c->tour_count, sizeof *c->tours, "tours", err))
         free(tour.video);
     else

@@ -24,6 +24,7 @@ static enum status put_held(struct page *page, const struct contents *c, const s
     fprintf(to, "</b> <span class=\"size\">%d × %d</span>", card->view->width, card->view->height);
     page_put_view_metric(to, c, card->view->name, "holdout.psnr", "PSNR");
     page_put_view_metric(to, c, card->view->name, "holdout.ssim", "SSIM");
+    page_put_view_metric(to, c, card->view->name, "holdout.flip", "FLIP");
     page_put_view_metric(to, c, card->view->name, "holdout.holes", "holes");
     page_put_tag(to, card->problem);
     fputs("</figcaption>\n</figure>\n", to);

@@ -104,6 +104,7 @@ static void put_tour(struct page *page, const struct contents *c, const struct t
     fputs(t->change[0] ? " after the change: " : " as they are", to);
     if (t->change[0]) page_put_change(to, t->change);
     if (t->relit) fputs(", in the new light", to);
+    if (t->flicker.known) fprintf(to, " <span class=\"size\">flicker %.2g %%</span>", 100 * t->flicker.middle);
     put_megabytes(to, t->bytes);
     fputs("</figcaption></figure>\n", to);
 }

@@ -84,6 +84,11 @@ static void put_scores(FILE *to, const struct effect_card *e)
     fputs(", ", to);
     page_put_plural(to, e->path.frame_count, "frame", "frames");
     fputs("</dd></div>\n", to);
+    if (e->flicker.known)
+        fprintf(to,
+                "<div><dt>flicker</dt><dd>%.2g %%, %.2g %%</dd><dd class=\"under\">change of light between a frame and "
+                "the next at one place of a surface: median and 95th percentile</dd></div>\n",
+                100 * e->flicker.middle, 100 * e->flicker.high);
     for (int i = 0; i < e->path.score_count; i++) {
         const struct path_score *score = &e->path.scores[i];
         const struct score_words *words = score_words_find(score->name);

@@ -3,6 +3,7 @@
 
 #include <stdlib.h>
 
+#include "stages/evaluate/measure/flip.h"
 #include "stages/evaluate/measure/metrics.h"
 
 /* False, without an error, if no window is wholly in the mask. */
@@ -28,7 +29,8 @@ enum status picture_errors(struct picture_errors *e, const uint8_t *photo, const
         all += inside[i] != 0;
         covered += mask[i];
     }
-    if (!metrics_psnr(photo, frame, width, height, inside, &e->psnr, err)) {
+    if (!metrics_psnr(photo, frame, width, height, inside, &e->psnr, err) &&
+        !flip_mean(photo, frame, width, height, inside, &e->flip, err)) {
         e->holes = (double)(all - covered) / (double)all;
         e->has_covered = covered > 0;
         e->has_ssim = ssim_exists(photo, frame, width, height, inside, windows, &e->ssim, err);

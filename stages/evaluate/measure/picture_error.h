@@ -13,6 +13,7 @@
 struct picture_errors {
     double psnr, ssim;                 /* over all pixels of the photograph; psnr: dB */
     double psnr_covered, ssim_covered; /* without holes */
+    double flip;                       /* over all pixels of the photograph */
     double holes;                      /* share of the photograph's pixels that no view covers, before filling */
     bool has_ssim, has_covered, has_ssim_covered; /* false: no window of 11 x 11 pixels; no covered pixel */
 };

@@ -12,7 +12,7 @@
 #include "stages/evaluate/scene/renders.h"
 
 struct render_sums { /* over the pictures that have the metric */
-    double psnr, ssim, psnr_covered, holes, rms, rms_clipped, error50, offset;
+    double psnr, flip, ssim, psnr_covered, holes, rms, rms_clipped, error50, offset;
     int pictures, with_ssim, covered, with_rms, with_clipped, with_error;
 };
 
@@ -53,8 +53,10 @@ static enum status add_encoded(struct evaluation *e, const char *of, const char 
 {
     s->pictures++;
     s->psnr += p->psnr;
+    s->flip += p->flip;
     s->holes += p->holes;
     if (!evaluation_metric(e, name, of, "psnr", p->psnr, err) &&
+        !evaluation_metric(e, name, of, "flip", p->flip, err) &&
         !evaluation_metric(e, name, of, "holes", 100 * p->holes, err) && p->has_ssim) {
         s->ssim += p->ssim;
         s->with_ssim++;
@@ -137,7 +139,8 @@ static enum status add_means(struct evaluation *e, const char *of, const struct 
     const int n = s->pictures;
     if (!evaluation_metric(e, NULL, of, "pictures", n, err) &&
         !evaluation_metric(e, NULL, of, "white", e->white, err) &&
-        !evaluation_metric(e, NULL, of, "psnr", s->psnr / n, err))
+        !evaluation_metric(e, NULL, of, "psnr", s->psnr / n, err) &&
+        !evaluation_metric(e, NULL, of, "flip", s->flip / n, err))
         evaluation_metric(e, NULL, of, "holes", 100 * s->holes / n, err);
     if (!err->status && own) evaluation_metric(e, NULL, of, "offset", s->offset, err);
     if (!err->status && s->with_ssim) evaluation_metric(e, NULL, of, "ssim", s->ssim / s->with_ssim, err);

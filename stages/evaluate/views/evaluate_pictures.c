@@ -8,7 +8,7 @@
 #include "stages/evaluate/measure/picture_error.h"
 
 struct picture_sums { /* over the pictures that have the metric */
-    double psnr, ssim, psnr_covered, ssim_covered, holes;
+    double psnr, flip, ssim, psnr_covered, ssim_covered, holes;
     int pictures, with_ssim, covered, with_ssim_covered;
     int min_size[2], max_size[2]; /* width and height, px */
 };
@@ -18,9 +18,11 @@ static enum status add_picture(struct evaluation *e, const struct view *view, co
 {
     struct metric_table *t = &e->table;
     s->psnr += p->psnr;
+    s->flip += p->flip;
     s->holes += p->holes;
     s->pictures++;
     if (!metric_add(t, view->name, "holdout.psnr", p->psnr, err) &&
+        !metric_add(t, view->name, "holdout.flip", p->flip, err) &&
         !metric_add(t, view->name, "holdout.holes", 100 * p->holes, err) && p->has_ssim) {
         s->ssim += p->ssim;
         s->with_ssim++;
@@ -137,7 +139,8 @@ enum status evaluate_pictures(struct evaluation *e, struct err *err)
         metric_note(t, err, "note: held-out pictures are compared at their own sizes, %d x %d to %d x %d px",
                     s.min_size[0], s.min_size[1], s.max_size[0], s.max_size[1]);
     if (!err->status && !metric_add(t, NULL, "holdout.pictures", s.pictures, err) &&
-        !metric_add(t, NULL, "holdout.psnr", s.psnr / s.pictures, err))
+        !metric_add(t, NULL, "holdout.psnr", s.psnr / s.pictures, err) &&
+        !metric_add(t, NULL, "holdout.flip", s.flip / s.pictures, err))
         metric_add(t, NULL, "holdout.holes", 100 * s.holes / s.pictures, err);
     if (!err->status && s.with_ssim) metric_add(t, NULL, "holdout.ssim", s.ssim / s.with_ssim, err);
     if (!err->status && s.covered) metric_add(t, NULL, "holdout.psnr_covered", s.psnr_covered / s.covered, err);

@@ -93,6 +93,7 @@ static void numbers_order_the_frames_of_a_model(void **state)
     struct camera_path path = {0};
     struct err err = ERR_INIT;
     point.position = vec3_make(0, 0, 10);
+    assert_int_equal(mkdir(scratch_path("model"), 0777), 0);
     scratch_write("model/cameras.txt", "1 SIMPLE_PINHOLE 64 48 60 32 24\n");
     scratch_write("model/images.txt",
                   "1 1 0 0 0 0 0 10 1 10.png\n\n2 1 0 0 0 0 0 9 1 9.png\n\n3 1 0 0 0 0 0 2 1 2.png\n\n");
@@ -145,6 +146,7 @@ static void what_cannot_be_a_film_is_named(void **state)
     }
     struct camera_path path = {0};
     struct err err = ERR_INIT;
+    assert_int_equal(mkdir(scratch_path("bent"), 0777), 0);
     scratch_write("bent/cameras.txt", "1 RADIAL 64 48 60 32 24 0.1 0\n");
     scratch_write("bent/images.txt", "1 1 0 0 0 0 0 10 1 a.png\n\n2 1 0 0 0 0 0 9 1 b.png\n\n");
     assert_int_equal(given_path_read(&path, scratch_path("bent"), "x", 25, &scene, NULL, &err), ST_DATA);
