@@ -2,10 +2,11 @@
 #
 #   blender scene.blend --background --python docs/blender_cameras.py -- DIR
 #
-# or open it in Blender's text editor (2.93 or later), set DIR below, and run it. DIR gets cameras.txt, images.txt and an
-# empty points3D.txt; its last part names the film. Import points/points.ply of the scene, without a change of axes, and
-# move the camera among them: a Blender unit is a unit of the scene. The frames are those of the scene, from its first to
-# its last one by its step; the size is that of the render, the lens may be keyed. Depth of field is not exported.
+# or open it in Blender's text editor (2.93 or later), set DIR below, and run it. DIR gets cameras.txt, images.txt and
+# an empty points3D.txt; its last part names the film. Import points/points.ply of the scene, without a change of axes,
+# and move the camera among them: a Blender unit is a unit of the scene. The frames are those of the scene, from its
+# first to its last one by its step; the size is that of the render, the lens may be keyed. Depth of field is not
+# exported.
 import os
 import sys
 
@@ -44,7 +45,8 @@ def write_cameras(folder):
         shift = [-sum(rows[k][j] * place[j] for j in range(3)) for k in range(3)]
         cameras.append("%d PINHOLE %d %d %.17g %.17g %.17g %.17g" % (i, width, height, fx, fy, cx, cy))
         w, x, y, z = quaternion(rows)
-        images.append("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d %06d.png\n" % ((i, w, x, y, z) + tuple(shift) + (i, i)))
+        images.append("%d %.17g %.17g %.17g %.17g %.17g %.17g %.17g %d %06d.png\n"
+                      % ((i, w, x, y, z) + tuple(shift) + (i, i)))
     os.makedirs(folder, exist_ok=True)
     for name, lines in (("points3D.txt", []), ("cameras.txt", cameras), ("images.txt", images)):
         with open(os.path.join(folder, name), "w") as to:

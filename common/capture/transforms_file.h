@@ -1,4 +1,4 @@
-/* transforms_file.h - transforms.json, as NeRF's first data sets, instant-ngp and nerfstudio write it: cameras by frames.
+/* transforms_file.h - transforms.json, as NeRF's first data sets, instant-ngp and nerfstudio write it: cameras.
  *
  * Lengths are in the world's units, lenses in px, of a picture whose top left corner is (0, 0). */
 #ifndef REMODEL_TRANSFORMS_FILE_H

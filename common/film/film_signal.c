@@ -7,11 +7,11 @@
  * with the constants of BT.709, or of BT.2020 (non-constant luminance) for films of high dynamic range. Chroma lies on
  * the left luma column of its pair, and between the two rows of a 4:2:0 pair: weights 1 2 1 across, 1 1 down.
  *
- * High dynamic range [ITU 2018]. Radiance goes to the primaries of BT.2020 [ITU 2015] and times FILM_WHITE becomes light
- * of the display, F, in cd/m2.
+ * High dynamic range [ITU 2018]. Radiance goes to the primaries of BT.2020 [ITU 2015] and times FILM_WHITE becomes
+ * light of the display, F, in cd/m2.
  *   PQ    E' = ((c1 + c2 Y^m1) / (1 + c3 Y^m1))^m2, Y = F / 10000
- *   HLG   is a signal of the scene, E' = OETF(E); E is the light whose rendering by the system's gamma (1.2 on a display
- *         of 1000 cd/m2) is F: E = (F / 1000) (Y / 1000)^((1 - 1.2) / 1.2), Y the luminance of F
+ *   HLG   is a signal of the scene, E' = OETF(E); E is the light whose rendering by the system's gamma (1.2 on a
+ *         display of 1000 cd/m2) is F: E = (F / 1000) (Y / 1000)^((1 - 1.2) / 1.2), Y the luminance of F
  * so both show the same picture: white has the signal 0.58 in PQ and 0.75 in HLG. */
 #include "common/film/film_signal.h"
 

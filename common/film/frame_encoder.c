@@ -1,7 +1,7 @@
 /* frame_encoder.c - see frame_encoder.h.
  *
- * ffmpeg reads raw pictures from a pipe and writes to the temporary file of the output, which is committed only if ffmpeg
- * took every frame and exited with 0. */
+ * ffmpeg reads raw pictures from a pipe and writes to the temporary file of the output, which is committed only if
+ * ffmpeg took every frame and exited with 0. */
 #include "common/film/frame_encoder.h"
 
 #include <math.h>

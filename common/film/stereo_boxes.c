@@ -1,7 +1,7 @@
 /* stereo_boxes.c - the boxes st3d and sv3d.
  *
- * An MP4 is a list of boxes, each of 4 bytes of size, big-endian and with these 8 bytes, 4 of type, and a content, which
- * may be boxes again. The new boxes become the last ones of the first track's first sample entry,
+ * An MP4 is a list of boxes, each of 4 bytes of size, big-endian and with these 8 bytes, 4 of type, and a content,
+ * which may be boxes again. The new boxes become the last ones of the first track's first sample entry,
  * moov/trak/mdia/minf/stbl/stsd/ENTRY, so the sizes of these seven grow. What lies behind the index (moov) moves by as
  * much, and with it the places of chunks in stco or co64, which count from the beginning of the file. The file is
  * changed in place, its tail from behind. */

@@ -1,8 +1,8 @@
 /* eyes_picture.c - one picture of those of two eyes.
  *
- * An anaglyph mixes both pictures with the matrices of [Dubois 2001], which bring what each eye sees through the glasses
- * nearest to the picture that it should see, in linear light. Each row sums to 1 over both matrices, so grey stays
- * grey where both eyes see the same. */
+ * An anaglyph mixes both pictures with the matrices of [Dubois 2001], which bring what each eye sees through the
+ * glasses nearest to the picture that it should see, in linear light. Each row sums to 1 over both matrices, so grey
+ * stays grey where both eyes see the same. */
 #include "stages/encode_video/eyes_picture.h"
 
 #include <string.h>

@@ -6,8 +6,8 @@
 
 #include "common/capture/camera_path.h"
 
-/* file: a JSON file, or a folder with cameras.txt and images.txt. Frames are in the order of the JSON file, of a model in
- * the order of their names, numbers by value; their times follow from fps. Odd sizes lose their last row or column.
+/* file: a JSON file, or a folder with cameras.txt and images.txt. Frames are in the order of the JSON file, of a model
+ * in the order of their names, numbers by value; their times follow from fps. Odd sizes lose their last row or column.
  * Frames of transforms.json may have `aperture` and `focus`, scene units. set: the scene's views and points. ST_DATA
  * names the file and the frame: no cameras, a lens that is no pinhole, sizes that differ, a film that shows none of the
  * scene's points. */

@@ -1,5 +1,4 @@
-/* plan_path.c - plans a camera move that shows a scene's depth but not its holes, or computes a film of keys or of given
- * cameras.
+/* plan_path.c - plans a camera move that shows depth but not holes, or computes a film of keys or of given cameras.
  *
  * reads   VIEWS/cameras.txt, images.txt, points3D.txt   the cameras
  *         for a move:

@@ -2,8 +2,8 @@
  *
  * The front face is N x N pixels, the four others are the halves next to it. Their pixels are smaller than those of the
  * equirectangular picture, by 1.6 in the middle of a face and 3.1 at its corners, so each pixel is the mean of 2 x 2
- * directions, interpolated linearly in their faces, which overlap by a pixel. Depth and holes are those of the nearest pixel: means of depths
- * would lie between surfaces. */
+ * directions, interpolated linearly in their faces, which overlap by a pixel. Depth and holes are those of the nearest
+ * pixel: means of depths would lie between surfaces. */
 #include "stages/render_views/half_sphere.h"
 
 #include <math.h>

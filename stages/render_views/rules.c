@@ -1,6 +1,6 @@
 /* rules.c - frames of films in chunks, a process each; of a chunk only the frames that are missing or stale are
- * rendered. A film of keys or of given cameras may go anywhere, so it is rendered from all views and has no layers but its
- * own. */
+ * rendered. A film of keys or of given cameras may go anywhere, so it is rendered from all views and has no layers but
+ * its own. */
 #include "common/graph/scene_rules.h"
 
 /* below: the folder of an eye below that of the film, or "". */

@@ -1,6 +1,7 @@
 /* transforms_model.c - cameras in transforms.json (common/capture/transforms_file.c) as those of photos.
  *
- * Paths are those of the program that wrote the file, so only the names of files count; names may lack the extension. */
+ * Paths are those of the program that wrote the file, so only the names of files count; names may lack their
+ * extension. */
 #include "stages/sfm/transforms_model.h"
 
 #include <stdio.h>

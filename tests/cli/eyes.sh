@@ -25,7 +25,7 @@ films_are_made_as_asked()
         [ -s $film/$f.mp4 ] || fail "there is no $f.mp4"
     done
     [ "$(find $film -maxdepth 1 -name 'video*' | wc -l)" = 6 ] || fail "other films were made"
-    size() { ffprobe -v error -show_entries stream=width,height -of default=nw=1:nk=1 "$film/$1" | head -2 | paste -sd,; }
+    size() { ffprobe -v error -show_entries stream=width,height -of default=nw=1:nk=1 "$film/$1" | sed -n 1,2p | paste -sd,; }
     [ "$(size video.mp4)" = 96,72 ] && [ "$(size video-side_by_side.mp4)" = 192,72 ] && [ "$(size video-vr180.mp4)" = 128,64 ] || fail "sizes"
     ffprobe -v error -show_streams $film/video-vr180-hlg.mp4 >tags
     for t in 'side by side' 'Spherical Mapping' arib-std-b67 bt2020nc yuv420p10le; do grep -q "$t" tags || { cat tags; fail "no $t"; }; done

@@ -1,5 +1,6 @@
-# stand_in_blender.py BLENDER.py SCRIPT DIR - runs the exported blender.py, then SCRIPT as `blender --python SCRIPT -- DIR`
-# would, with as much of Blender's interface as both use: keys set by keyframe_insert() hold at their frame.
+# stand_in_blender.py BLENDER.py SCRIPT DIR - runs the exported blender.py, then SCRIPT as
+# `blender --python SCRIPT -- DIR` would, with as much of Blender's interface as both use: keys set by
+# keyframe_insert() hold at their frame.
 import sys
 import types
 
@@ -27,7 +28,8 @@ class Matrix:
         self.rows = [list(row) for row in rows]
 
     def decompose(self):
-        return Vector(row[3] for row in self.rows[:3]), Quaternion([row[:3] for row in self.rows[:3]]), Vector((1, 1, 1))
+        place, turn = [row[3] for row in self.rows[:3]], [row[:3] for row in self.rows[:3]]
+        return Vector(place), Quaternion(turn), Vector((1, 1, 1))
 
 
 class Keyed:
@@ -56,8 +58,8 @@ def frame_set(frame):
 
 
 def new_data(name):
-    return Keyed(type='PERSP', sensor_width=36.0, sensor_height=24.0, sensor_fit='AUTO', shift_x=0.0, shift_y=0.0, lens=50.0,
-                 dof=Keyed(use_dof=False, aperture_fstop=0, focus_distance=0))
+    return Keyed(type='PERSP', sensor_width=36.0, sensor_height=24.0, sensor_fit='AUTO', shift_x=0.0, shift_y=0.0,
+                 lens=50.0, dof=Keyed(use_dof=False, aperture_fstop=0, focus_distance=0))
 
 
 scene = types.SimpleNamespace(camera=None, frame_step=1, frame_set=frame_set, render=types.SimpleNamespace())

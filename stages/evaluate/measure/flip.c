@@ -10,8 +10,8 @@
  * degrees: the larger difference of their magnitudes, over sqrt 2, to the power 0.5.
  * The difference of a pixel is colour ^ (1 - features).
  *
- * All kernels are separable: the sum of two Gaussians is filtered as two, and the positive and the negative weights of a
- * derivative are normalised along one axis alone, which is the same as in the plane. Borders are repeated. */
+ * All kernels are separable: the sum of two Gaussians is filtered as two, and the positive and the negative weights of
+ * a derivative are normalised along one axis alone, which is the same as in the plane. Borders are repeated. */
 #include "stages/evaluate/measure/flip.h"
 
 #include <math.h>

@@ -1,4 +1,5 @@
-/* flip.c - FLIP of equal pictures, of extreme colours, and of a picture computed with the paper's kernels in the plane. */
+/* flip.c - FLIP of equal pictures, of extreme colours, and of pictures with a value by the paper's kernels in the
+ * plane. */
 #include "stages/evaluate/measure/flip.h"
 
 #include <math.h>

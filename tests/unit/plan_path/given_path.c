@@ -1,4 +1,4 @@
-/* given_path.c - a film's cameras come back from transforms.json and from COLMAP's text; what cannot be a film is named. */
+/* given_path.c - a film's cameras come back from transforms.json and COLMAP's text; what cannot be a film is named. */
 #include "stages/plan_path/given_path.h"
 
 #include <math.h>

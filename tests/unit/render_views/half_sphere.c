@@ -70,8 +70,8 @@ static void pixels_show_their_directions(void **state)
             if (d[2] > 0.5) worst_z = fmax(worst_z, fabs((double)out.z[y * N + x] - DISTANCE));
         }
     print_message("directions off by %.4f, depths by %.3f of %g\n", worst, worst_z, DISTANCE);
-    assert_true(worst < 0.002);             /* a pixel is 0.026 radians wide */
-    assert_true(worst_z < 0.03 * DISTANCE); /* of the nearest pixel */
+    assert_true(worst < 0.002);                          /* a pixel is 0.026 radians wide */
+    assert_true(worst_z < 0.03 * DISTANCE);              /* of the nearest pixel */
     assert_float_equal(out.hole_fraction, 0.2919, 0.02); /* by numerical integration */
     assert_true(out.unfilled_fraction == 0);
     rendered_frame_release(&out);

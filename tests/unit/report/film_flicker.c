@@ -1,4 +1,4 @@
-/* film_flicker.c - surfaces that keep their light do not flicker, however the camera moves; what changes is measured. */
+/* film_flicker.c - surfaces that keep their light do not flicker, however the camera moves; changes are measured. */
 #include "stages/report/film_flicker.h"
 
 #include <math.h>
