@@ -22,8 +22,15 @@ if command -v colmap >/dev/null; then
     esac
 fi
 if command -v ffmpeg >/dev/null; then
-    if ffmpeg -hide_banner -encoders 2>/dev/null | grep ' libx264 ' >/dev/null; then ok "ffmpeg with libx264"
-    else bad "ffmpeg has no encoder libx264, so it writes no films; install the package of Debian"; fi
+    encoders=$(ffmpeg -hide_banner -encoders 2>/dev/null) lacks=
+    case $encoders in
+    *" libx264 "*) ok "ffmpeg with libx264" ;;
+    *) bad "ffmpeg has no encoder libx264, so it writes no films; install the package of Debian" ;;
+    esac
+    for e in libx265:hlg,pq libsvtav1:av1 prores_ks:prores; do
+        case $encoders in *" ${e%:*} "*) ;; *) lacks+=" ${e#*:} (${e%:*})" ;; esac
+    done
+    [ -z "$lacks" ] || note "ffmpeg has no encoder for FILM=$lacks; the package of Debian has"
 fi
 
 if [ "$(uname -m)" = x86_64 ] && ! grep -qw avx2 /proc/cpuinfo; then
