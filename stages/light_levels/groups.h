@@ -9,7 +9,7 @@
 
 #include "common/daylight/sky_patches.h"
 #include "common/gather/model_field.h"
-#include "stages/light_levels/planned_lamps.h"
+#include "common/relight/planned_lamps.h"
 
 struct light_window {
     const char *name;    /* of the mesh or of lights.txt */

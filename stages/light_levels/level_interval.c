@@ -6,7 +6,7 @@
 static double square(double v) { return v * v; }
 
 void level_interval_variance(double variance[2], struct level_origin of, const struct lux_interval *scale,
-                             const struct level_metre *metre)
+                             const struct model_metre *metre)
 {
     for (int k = 0; k < 2; k++) {
         variance[k] = 0;
@@ -20,7 +20,7 @@ void level_interval_variance(double variance[2], struct level_origin of, const s
 
 void level_interval(double ends[2], struct level_origin of, const struct levels_params *params,
                     const struct light_errors *errors, const struct lux_interval *scale,
-                    const struct level_metre *metre)
+                    const struct model_metre *metre)
 {
     double variance[2];
     level_interval_variance(variance, of, scale, metre);

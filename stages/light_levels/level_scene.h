@@ -2,8 +2,8 @@
 #ifndef REMODEL_LEVEL_SCENE_H
 #define REMODEL_LEVEL_SCENE_H
 
+#include "common/model/model_metre.h"
 #include "stages/light_levels/colours.h"
-#include "stages/light_levels/level_metre.h"
 #include "stages/light_levels/levels_params.h"
 
 /* {0} is the empty state; everything but the paths is owned. It must not move once it was read. */
@@ -14,7 +14,7 @@ struct level_scene {
     struct field_surfaces surfaces;
     struct model_axes axes;
     bool edited;
-    struct level_metre metre;
+    struct model_metre metre;
     const struct planned_lamps *planned; /* not owned; NULL: none */
 };
 

@@ -25,7 +25,7 @@ struct level_script {
     const struct levels_params *params;
     const struct lux_scale *scale;
     const struct light_errors *errors;
-    const struct level_metre *metre;
+    const struct model_metre *metre;
     bool metric;
 };
 

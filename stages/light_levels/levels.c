@@ -66,7 +66,7 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
         model_plan_read(&j->plan, f->plan, &j->prov, err) || level_scene_read(&j->scene, &f->light, &j->prov, err) ||
         add_lamps_of_edit(j, err) || level_lamps_check(&j->states, &level_scene_field(&j->scene)->lights, err) ||
         level_blinds_check(&j->states, &j->scene, err) ||
-        level_metre_find(&j->scene.metre, &j->scene.axes, &j->plan, &j->params, err))
+        model_metre_find(&j->scene.metre, &j->scene.axes, &j->plan, j->params.room_height, err))
         return err->status;
     j->scene.planned = &j->states.planned;
     if (!j->plan.room_count)
@@ -78,7 +78,7 @@ static enum status read_inputs(struct levels_job *j, struct err *err)
                  "(%g to %g). It sets the work plane and the distances of points%s. Give the scale as "
                  "docs/model-script.md explains.",
                  j->scene.metre.units, j->scene.metre.low, j->scene.metre.high, j->params.room_height,
-                 level_metre_heights[0], level_metre_heights[1],
+                 model_metre_heights[0], model_metre_heights[1],
                  j->states.planned.count ? ", and how bright planned lamps are" : "");
     return ST_OK;
 }

@@ -3,6 +3,7 @@
 #define REMODEL_LEVELS_PARAMS_H
 
 #include "common/base/param.h"
+#include "common/model/model_metre.h"
 
 /* name, type, default, min, max, unit, help */
 #define LEVELS_PARAMS(X)                                                                                              \
@@ -12,7 +13,7 @@
     X(spacing, double, 0.5, 0.05, 10, "m", "distance of the points on a work plane or floor")                         \
     X(margin, double, 0.5, 0, 10, "m", "distance of these points from the walls")                                     \
     X(work_plane, double, 0.75, 0.05, 3, "m", "height of the work plane above the floor")                             \
-    X(room_height, double, 2.5, 1.5, 10, "m",                                                                         \
+    X(room_height, double, MODEL_METRE_ROOM, 1.5, 10, "m",                                                            \
       "height of rooms by which a metre is guessed in a scene without a scale; those of homes are 2.2 to 3.2")        \
     X(glass, double, 0.8, 0.01, 1, "",                                                                                \
       "part of the light that the panes let through, for skies other than the photographed one, which has it")        \

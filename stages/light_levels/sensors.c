@@ -24,7 +24,7 @@ struct spread {
     const struct model_field *field;
     const struct model_plan *plan;
     const struct levels_params *params;
-    const struct level_metre *metre;
+    const struct model_metre *metre;
 };
 
 const char *sensor_kind_word(enum sensor_kind kind)
@@ -152,7 +152,7 @@ static enum status add_room(const struct spread *j, int room, enum sensor_kind k
 
 static enum status add_rooms(const struct spread *j, struct err *err)
 {
-    const struct level_metre *m = j->metre;
+    const struct model_metre *m = j->metre;
     const double height = j->params->work_plane;
     for (int i = 0; !err->status && i < j->plan->room_count; i++) {
         if (add_room(j, i, SENSOR_WORK_PLANE, height * m->units, err)) break;
@@ -202,7 +202,7 @@ static enum status add_place(const struct spread *j, const struct place_list *l,
 
 enum status sensors_make(struct sensors *s, const struct model_field *field, const struct model_plan *plan,
                          const struct place_list *places, const struct levels_params *params,
-                         const struct level_metre *metre, struct err *err)
+                         const struct model_metre *metre, struct err *err)
 {
     const struct spread j = {s, field, plan, params, metre};
     *s = (struct sensors){0};

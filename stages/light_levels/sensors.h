@@ -3,8 +3,9 @@
 #define REMODEL_LEVELS_SENSORS_H
 
 #include "common/gather/model_field.h"
+#include "common/model/model_metre.h"
 #include "common/model/model_plan.h"
-#include "stages/light_levels/level_metre.h"
+#include "stages/light_levels/levels_params.h"
 #include "stages/light_levels/place_list.h"
 
 enum sensor_kind {
@@ -41,7 +42,7 @@ const char *sensor_kind_word(enum sensor_kind kind);
  * line. */
 enum status sensors_make(struct sensors *s, const struct model_field *field, const struct model_plan *plan,
                          const struct place_list *places, const struct levels_params *params,
-                         const struct level_metre *metre, struct err *err);
+                         const struct model_metre *metre, struct err *err);
 void sensors_release(struct sensors *s);
 
 #endif

@@ -21,7 +21,7 @@
 #include "common/base/provenance.h"
 #include "common/daylight/sky_luminance.h"
 #include "common/daylight/weather.h"
-#include "stages/light_levels/planned_lamps.h"
+#include "common/relight/planned_lamps.h"
 
 enum state_sky { STATE_SKY_NONE, STATE_SKY_PHOTOGRAPHED, STATE_SKY_OVERCAST, STATE_SKY_TIME, STATE_SKY_WEATHER };
 

@@ -2,7 +2,7 @@
  * reflectance, a box in the way; how long a metre is where no scale is known; errors of states.txt. */
 #include "tests/unit/level_room.h"
 
-#include "stages/light_levels/level_metre.h"
+#include "common/model/model_metre.h"
 #include "stages/light_levels/state_list.h"
 
 /* 500 cd down, 100 cd at 60 degrees and 0 at 90, linear between; at 90 degrees around half as much as along x. */
@@ -168,9 +168,8 @@ static void a_metre_is_guessed_by_the_height_of_rooms(void **state)
 {
     struct model_room_corner corners[] = {{.x = 0, .y = 0}, {.x = 4, .y = 0}, {.x = 4, .y = 4}, {.x = 0, .y = 4}};
     struct model_room rooms[3];
-    struct level_metre m;
+    struct model_metre m;
     struct err err = ERR_INIT;
-    const struct levels_params params = LEVELS_PARAMS_DEFAULT;
     struct model_axes axes = {.scale = 1};
     (void)state;
     for (int i = 0; i < 3; i++) /* 15, 15.5 and 28 units high */
@@ -180,15 +179,15 @@ static void a_metre_is_guessed_by_the_height_of_rooms(void **state)
                                        .corners = corners,
                                        .corner_count = 4};
     const struct model_plan plan = {.rooms = rooms, .room_count = 3}, empty = {.room_count = 0};
-    assert_ok(level_metre_find(&m, &axes, &plan, &params, &err), err);
+    assert_ok(model_metre_find(&m, &axes, &plan, MODEL_METRE_ROOM, &err), err);
     assert_true(m.guessed);
     assert_near(m.units, 15.5 / 2.5, 1e-12);
     assert_near(m.low, 15.5 / 3.2, 1e-12);
     assert_near(m.high, 15.5 / 2.2, 1e-12);
-    assert_ok(level_metre_find(&m, &axes, &empty, &params, &err), err);
+    assert_ok(model_metre_find(&m, &axes, &empty, MODEL_METRE_ROOM, &err), err);
     assert_true(!m.guessed && m.units == 1);
     axes.metric = true;
-    assert_ok(level_metre_find(&m, &axes, &plan, &params, &err), err);
+    assert_ok(model_metre_find(&m, &axes, &plan, MODEL_METRE_ROOM, &err), err);
     assert_true(!m.guessed && m.units == 1 && m.low == 1 && m.high == 1);
 }
 

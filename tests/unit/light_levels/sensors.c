@@ -14,7 +14,7 @@ static struct model_room_corner corners[] = {{.x = 0, .y = 0}, {.x = 4, .y = 0},
 static struct model_room hall = {
     .name = room_name, .ceiling = {{1.9, 0, 0}}, .ceilings = 1, .corners = corners, .corner_count = 4};
 
-static struct sensors sensors_of(const struct room *r, const struct level_metre *metre)
+static struct sensors sensors_of(const struct room *r, const struct model_metre *metre)
 {
     const struct model_plan plan = {.rooms = &hall, .room_count = 1};
     const struct place_list places = {.count = 0};
@@ -33,7 +33,7 @@ static void points_below_furniture_are_told_apart_and_those_inside_left_out(void
     struct room r;
     (void)state;
     start(&r, furnished, 4);
-    struct sensors s = sensors_of(&r, &(struct level_metre){1, 1, 1, false});
+    struct sensors s = sensors_of(&r, &(struct model_metre){1, 1, 1, false});
     assert_int_equal(s.area_count, 3);
     for (int k = 0; k < 3; k++) {
         assert_int_equal(s.areas[k].kind, kinds[k]);
@@ -55,7 +55,7 @@ static void a_guessed_metre_sets_heights_and_distances(void **state)
     struct room r;
     (void)state;
     start(&r, furnished, 2);
-    struct sensors s = sensors_of(&r, &(struct level_metre){0.5, 0.4, 0.6, true});
+    struct sensors s = sensors_of(&r, &(struct model_metre){0.5, 0.4, 0.6, true});
     static const double heights[] = {0.375, 0.3, 0.45, 0.005};
     assert_int_equal(s.area_count, 4);
     for (int k = 0; k < 4; k++) {

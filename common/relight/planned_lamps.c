@@ -4,7 +4,7 @@
  * / d^2, with the angle between its normal and the direction to the luminaire. That is exact far away. Nearer, within
  * about five times its size, the light is taken to leave all places of the luminous opening alike, each with the same
  * distribution, as ies2rad of [Ward 1994] does. Light through the opening's height is taken to leave its middle. */
-#include "stages/light_levels/planned_lamps.h"
+#include "common/relight/planned_lamps.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -161,17 +161,63 @@ bool planned_lamp_is_wide(const struct planned_lamp *l)
     return fabs(l->web.width) > SMALLEST || fabs(l->web.length) > SMALLEST;
 }
 
-struct vec3 planned_lamp_place(const struct planned_lamp *l, const double u[2], double metre)
+/* Half the width and length in m, and whether the opening is round; a side that is missing of a round one is that of
+ * the other. */
+static bool half_sizes(const struct planned_lamp *l, double *width, double *length)
+{
+    const bool round = l->web.width < 0 || l->web.length < 0;
+    *width = 0.5 * fabs(l->web.width);
+    *length = 0.5 * fabs(l->web.length);
+    if (round && !(*length > 0)) *length = *width;
+    if (round && !(*width > 0)) *width = *length;
+    return round;
+}
+
+/* The place a, b of -1 to 1 along and across the opening. */
+static struct vec3 place_at(const struct planned_lamp *l, double a, double b)
 {
     const struct vec3 across = vec3_cross(l->down, l->along);
-    double width = 0.5 * fabs(l->web.width), length = 0.5 * fabs(l->web.length), a = 2 * u[0] - 1, b = 2 * u[1] - 1;
-    if (l->web.width < 0 || l->web.length < 0) { /* round; a size that is missing is that of the other side */
-        if (!(length > 0)) length = width;
-        if (!(width > 0)) width = length;
+    return vec3_add(l->at, vec3_add(vec3_scale(l->along, a), vec3_scale(across, b)));
+}
+
+struct vec3 planned_lamp_place(const struct planned_lamp *l, const double u[2], double metre)
+{
+    double width, length, a = 2 * u[0] - 1, b = 2 * u[1] - 1;
+    if (half_sizes(l, &width, &length)) {
         a = sqrt(u[0]) * cos(2 * PI * u[1]);
         b = sqrt(u[0]) * sin(2 * PI * u[1]);
     }
-    return vec3_add(l->at, vec3_add(vec3_scale(l->along, a * length * metre), vec3_scale(across, b * width * metre)));
+    return place_at(l, a * length * metre, b * width * metre);
+}
+
+bool planned_lamp_covers(const struct planned_lamp *l, struct vec3 point, double metre)
+{
+    const struct vec3 q = vec3_sub(point, l->at);
+    double width, length;
+    const bool round = half_sizes(l, &width, &length);
+    const double a = vec3_dot(q, l->along) / (length * metre);
+    const double b = vec3_dot(q, vec3_cross(l->down, l->along)) / (width * metre);
+    return round ? a * a + b * b <= 1 : fmax(fabs(a), fabs(b)) <= 1;
+}
+
+double planned_lamp_area(const struct planned_lamp *l)
+{
+    double width, length;
+    return half_sizes(l, &width, &length) ? PI * width * length : 4 * width * length;
+}
+
+int planned_lamp_outline(struct vec3 corners[PLANNED_LAMP_CORNERS], const struct planned_lamp *l, double least,
+                         double metre)
+{
+    static const double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
+    double width, length;
+    const int count = half_sizes(l, &width, &length) ? PLANNED_LAMP_CORNERS : 4;
+    width = metre * fmax(width, least / 2);
+    length = metre * fmax(length, least / 2);
+    for (int i = 0; i < count; i++)
+        corners[i] = count == 4 ? place_at(l, square[i][0] * length, square[i][1] * width)
+                                : place_at(l, length * cos(2 * PI * i / count), width * sin(2 * PI * i / count));
+    return count;
 }
 
 double planned_lamp_illuminance(const struct planned_lamp *l, struct vec3 place, struct vec3 point, struct vec3 normal,

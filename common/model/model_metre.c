@@ -1,16 +1,16 @@
-/* level_metre.c - see level_metre.h.
+/* model_metre.c - see model_metre.h.
  *
  * Where no scale is known, something of a typical size has to stand for one. Heights of rooms vary least: homes have
- * 2.3 to 2.6 m, flats of before 1920 up to 3.2. So the median height of the rooms is taken as `[light_levels]
- * room_height`, 2.5 m, and as 2.2 and 3.2 m at the ends of the interval. */
-#include "stages/light_levels/level_metre.h"
+ * 2.3 to 2.6 m, flats of before 1920 up to 3.2. So the median height of the rooms is taken as
+ * a typical one, and as 2.2 and 3.2 m at the ends of the interval. */
+#include "common/model/model_metre.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #include "common/base/sort.h"
 
-const double level_metre_heights[2] = {2.2, 3.2};
+const double model_metre_heights[2] = {2.2, 3.2};
 
 /* Above the middle of the corners. */
 static double room_height(const struct model_room *r)
@@ -23,11 +23,11 @@ static double room_height(const struct model_room *r)
     return model_room_ceiling(r, x, y) - r->floor;
 }
 
-enum status level_metre_find(struct level_metre *m, const struct model_axes *axes, const struct model_plan *plan,
-                             const struct levels_params *params, struct err *err)
+enum status model_metre_find(struct model_metre *m, const struct model_axes *axes, const struct model_plan *plan,
+                             double typical, struct err *err)
 {
     int count = 0;
-    *m = (struct level_metre){1, 1, 1, false};
+    *m = (struct model_metre){1, 1, 1, false};
     if (axes->metric) return ST_OK;
     double *heights = malloc(((size_t)plan->room_count + 1) * sizeof *heights);
     if (!heights) return err_nomem(err, "rooms", (size_t)plan->room_count * sizeof *heights);
@@ -38,9 +38,9 @@ enum status level_metre_find(struct level_metre *m, const struct model_axes *axe
     if (count) {
         sort_doubles(heights, (size_t)count);
         const double middle = 0.5 * (heights[(count - 1) / 2] + heights[count / 2]);
-        m->units = middle / params->room_height;
-        m->low = fmin(m->units, middle / level_metre_heights[1]);
-        m->high = fmax(m->units, middle / level_metre_heights[0]);
+        m->units = middle / typical;
+        m->low = fmin(m->units, middle / model_metre_heights[1]);
+        m->high = fmax(m->units, middle / model_metre_heights[0]);
         m->guessed = true;
     }
     free(heights);

@@ -5,8 +5,8 @@
  * FILE.ies is beside states.txt. X Y Z is the middle of the luminous opening in the model's frame. `aim` is where the
  * vertical angle 0 of the file points, straight down without it. `turn` turns the luminaire about that axis,
  * counter-clockwise from above; without it the horizontal angle 0 lies along x. */
-#ifndef REMODEL_LEVELS_PLANNED_LAMPS_H
-#define REMODEL_LEVELS_PLANNED_LAMPS_H
+#ifndef REMODEL_PLANNED_LAMPS_H
+#define REMODEL_PLANNED_LAMPS_H
 
 #include "common/daylight/photometry.h"
 #include "common/light/colour.h"
@@ -42,6 +42,14 @@ int planned_lamps_find(const struct planned_lamps *l, const char *name); /* -1: 
 bool planned_lamp_is_wide(const struct planned_lamp *l);
 /* A place of the luminous opening, u and v of 0 to 1; metre: model units of one. */
 struct vec3 planned_lamp_place(const struct planned_lamp *l, const double u[2], double metre);
+/* Whether a point of the opening's plane is in it; its area in square metres. Of a lamp that is wide. */
+bool planned_lamp_covers(const struct planned_lamp *l, struct vec3 point, double metre);
+double planned_lamp_area(const struct planned_lamp *l);
+/* The corners of the opening in order, of a round one of its outline; narrower sides than `least` metres are that wide.
+ * Returns their number. */
+enum { PLANNED_LAMP_CORNERS = 24 };
+int planned_lamp_outline(struct vec3 corners[PLANNED_LAMP_CORNERS], const struct planned_lamp *l, double least,
+                         double metre);
 /* Illuminance in lx of a point from all of the lamp's light, sent out at one place that nothing hides. */
 double planned_lamp_illuminance(const struct planned_lamp *l, struct vec3 place, struct vec3 point, struct vec3 normal,
                                 double metre);
