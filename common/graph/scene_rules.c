@@ -96,6 +96,29 @@ const char *scene_materials(struct graph *g, const struct scene_facts *f)
     return f->has_model && graph_scene_file(g, "materials.txt") ? PATH(g, MATERIALS) : NULL;
 }
 
+const char *scene_lux_scale(struct graph *g, const struct scene_facts *f)
+{
+    const char *scale = PATH(g, LUX_SCALE);
+    return f->has_model && (graph_scene_file(g, "lux.txt") || path_is_file(scale)) ? scale : NULL;
+}
+
+bool scene_has_webs(struct graph *g, const struct scene_facts *f)
+{
+    struct name_list webs = {0};
+    name_list_add_files(&webs, f->folder, "", ".ies", graph_err(g));
+    const bool any = webs.count > 0;
+    name_list_release(&webs);
+    return any;
+}
+
+void rule_needs_webs(struct graph *g, const struct scene_facts *f)
+{
+    struct name_list webs = {0};
+    name_list_add_files(&webs, f->folder, "", ".ies", graph_err(g));
+    for (int i = 0; i < webs.count; i++) rule_needs(g, graph_text(g, "%s/%s.ies", f->folder, webs.names[i]));
+    name_list_release(&webs);
+}
+
 void rule_needs_light_change(struct graph *g, const struct scene_facts *f, const char *edit)
 {
     const char *edited = graph_text(g, "remodel/%s", edit);
@@ -108,6 +131,13 @@ void rule_needs_light_change(struct graph *g, const struct scene_facts *f, const
     rule_needs(g, PATH(g, OUTDOORS));
     if (f->views.count) rule_needs(g, PATH(g, THINGS));
     if (f->views.count) rule_needs(g, PATH(g, THING_VOLUME));
+    if (scene_has_webs(g, f)) { /* that the edit may hang lamps by */
+        const char *scale = scene_lux_scale(g, f);
+        rule_needs_webs(g, f);
+        rule_needs(g, PATH(g, PLAN, .model = edited));
+        if (scale) rule_needs(g, scale);
+        rule_needs(g, graph_stamp(g, "lux_scale.txt", scale ? scale : "none"));
+    }
     if (!scene_lights(g, f)) return;
     rule_needs(g, scene_lights(g, f));
     rule_needs_references(g, f);
@@ -126,6 +156,10 @@ void rule_light_change(struct graph *g, const struct scene_facts *f, const char 
     if (scene_lights(g, f) && scene_has_references(g, f)) rule_option(g, "--references", FOLDER(g, LRI, .photo = ""));
     rule_option(g, "--objects", PATH(g, OBJECTS, .model = edited));
     if (f->views.count) rule_option(g, "--things", FOLDER(g, THINGS));
+    if (scene_has_webs(g, f)) {
+        rule_option(g, "--edited-plan", PATH(g, PLAN, .model = edited));
+        rule_option(g, "--lux-scale", scene_lux_scale(g, f));
+    }
     rule_option(g, "--scene", f->folder);
 }
 

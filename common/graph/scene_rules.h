@@ -49,6 +49,13 @@ bool scene_has_references(struct graph *g, const struct scene_facts *f);
 const char *scene_lights(struct graph *g, const struct scene_facts *f);
 const char *scene_materials(struct graph *g, const struct scene_facts *f);
 
+/* The scale to lx: made where somebody measured, else where `make luminance` has made it, since photos need not say
+ * their exposure; NULL: there is none. */
+const char *scene_lux_scale(struct graph *g, const struct scene_facts *f);
+/* IES files of luminaires in the scene's folder. */
+bool scene_has_webs(struct graph *g, const struct scene_facts *f);
+void rule_needs_webs(struct graph *g, const struct scene_facts *f);
+
 /* What a change of light is computed from, by the edit's name: needs, and options of the programs. */
 void rule_needs_light_change(struct graph *g, const struct scene_facts *f, const char *edit);
 void rule_light_change(struct graph *g, const struct scene_facts *f, const char *edit);

@@ -20,6 +20,10 @@
         CLI_STR("objects", &(files)->objects, CLI_OPTIONAL, "synthetic objects of the edit, objects.txt"), \
         CLI_STR("things", &(files)->things, CLI_OPTIONAL,                                                  \
                 "folder of the scene's things: where the edit changes one, they throw shadows"),           \
-        CLI_STR("scene", &(files)->scene, CLI_OPTIONAL, "folder of the objects' meshes")
+        CLI_STR("lux-scale", &(files)->lux_scale, CLI_OPTIONAL,                                            \
+                "lx of the photographs' unit, scale.txt: lamps with IES files that the edit adds shine"),  \
+        CLI_STR("edited-plan", &(files)->edited_plan, CLI_OPTIONAL,                                        \
+                "plan.txt of the edit, by which such lamps guess a metre in a scene without a scale"),     \
+        CLI_STR("scene", &(files)->scene, CLI_OPTIONAL, "folder of the objects' meshes and IES files")
 
 #endif

@@ -111,14 +111,27 @@ static enum status add_surfaces(struct light_change *c, struct err *err)
     return ST_OK;
 }
 
+static enum status read_lamps(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
+                              struct err *err)
+{
+    const struct edit_lamp_files of = {files->lux_scale, files->edited_plan, files->scene};
+    return edit_lamps_read(&c->lamps, &of, &c->map, &c->axes, prov, err);
+}
+
+/* Furniture throws shadows in the light of new lamps, wherever it stands. */
+static enum status read_things(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
+                               struct err *err)
+{
+    const bool always = files->all_things || c->lamps.planned.count > 0;
+    return light_things_read(&c->things, files->things, &c->map, always, files->base, files->edited, prov, err);
+}
+
 enum status light_change_read(struct light_change *c, const struct light_change_files *files, struct provenance *prov,
                               struct err *err)
 {
     *c = (struct light_change){0};
     if (!model_axes_read(&c->axes, files->axes, prov, err) && !texture_map_read(&c->map, files->map, prov, err) &&
-        !read_objects(c, files, prov, err) &&
-        !light_things_read(&c->things, files->things, &c->map, files->all_things, files->base, files->edited, prov,
-                           err) &&
+        !read_objects(c, files, prov, err) && !read_lamps(c, files, prov, err) && !read_things(c, files, prov, err) &&
         !add_surfaces(c, err) && !read_fields(c, files, prov, err) &&
         !face_areas_make(&c->old, &c->before.model.mesh, err) && !unite_emitters(c, err) && c->things.before.count &&
         !files->all_things)
@@ -136,6 +149,7 @@ void light_change_release(struct light_change *c)
     texture_map_release(&c->map);
     light_objects_release(&c->objects);
     light_things_release(&c->things);
+    edit_lamps_release(&c->lamps);
     thing_surfaces_release(&c->added);
     face_areas_release(&c->old);
     free(c->emitters);

@@ -8,6 +8,7 @@
 
 #include "common/gather/model_field.h"
 #include "common/model/model_axes.h"
+#include "common/relight/edit_lamps.h"
 #include "common/relight/face_areas.h"
 #include "common/relight/light_objects.h"
 #include "common/relight/light_things.h"
@@ -25,7 +26,9 @@ struct light_change_files {
     const char *scene;        /* scenes/NAME, the folder of the objects' meshes */
     const char *things;       /* folder of the scene's things; NULL: furniture throws no shadows */
     const char *object_light; /* their light, as update_vita wrote it; NULL: not known yet */
-    bool all_things;          /* furniture counts also where the edit changes none of it */
+    const char *lux_scale;   /* lx of the photographs' unit; NULL: unknown, and lamps that the edit adds do not shine */
+    const char *edited_plan; /* plan.txt of the edit, for those; NULL: none is needed */
+    bool all_things;         /* furniture counts also where the edit changes none of it */
 };
 
 /* {0} is the empty state; everything is owned. It must not move once it was read. */
@@ -35,6 +38,7 @@ struct light_change {
     struct model_axes axes;
     struct light_objects objects;
     struct light_things things;
+    struct edit_lamps lamps;                    /* that the edit adds; in no field */
     struct thing_surfaces added;                /* the objects, then the things of `after` */
     struct field_surfaces old_things, surfaces; /* in `before`: the things; in `after`: what was added */
     struct face_areas old;                      /* of the unedited model */

@@ -129,7 +129,7 @@ static enum status read_photo(struct level_view *v, const struct photo_sight *s,
                               const struct scene_cameras *cameras, struct provenance *prov, struct err *err)
 {
     const int pixels = v->width * v->height, first = photo_of_view(&cameras->set, &cameras->lenses, s->camera.view_idx);
-    const bool relit = is_relit(files, cameras, first, err);
+    const bool relit = v->relit = is_relit(files, cameras, first, err);
     double *sum = calloc(4 * (size_t)pixels + 1, sizeof *sum);
     if (!sum) return err_nomem(err, "a photo", 4 * (size_t)pixels * sizeof *sum);
     for (int k = 0; !err->status && k < cameras->set.view_count; k++) {
@@ -200,8 +200,10 @@ static enum status make_view(struct level_view *v, const char *name, const struc
     const int wide = (int)fmax(2, 2 * floor(lens->width * scale / 2));
     const int high = (int)fmax(2, 2 * floor(lens->height * scale / 2));
     const bool lies = sight.quarters & 1;
-    *v = (struct level_view){
-        name, lies ? high : wide, lies ? wide : high, model_from_world_point(axes, sight.camera.center), NULL, NULL};
+    *v = (struct level_view){.name = name,
+                             .width = lies ? high : wide,
+                             .height = lies ? wide : high,
+                             .from = model_from_world_point(axes, sight.camera.center)};
     const size_t pixels = (size_t)wide * (size_t)high;
     v->pixels = malloc(pixels * sizeof *v->pixels);
     v->photo = malloc(3 * pixels);
@@ -225,6 +227,8 @@ enum status level_views_make(struct level_views *v, const struct level_view_file
     if (!v->list) return err_nomem(err, "photos", (size_t)files->names.count * sizeof *v->list);
     for (int i = 0; !err->status && i < files->names.count; i++)
         make_view(&v->list[v->count++], files->names.items[i], files, &v->cameras, axes, light, prov, err);
+    v->relit = v->count > 0;
+    for (int i = 0; i < v->count; i++) v->relit &= v->list[i].relit;
     return err->status;
 }
 

@@ -24,6 +24,7 @@ struct level_view {
         int surface;      /* the face; below -1: -2 - patch of furniture; -1: nothing; NO_PHOTO: beyond the photo */
     } * pixels;           /* owned */
     unsigned char *photo; /* sRGB, 3 bytes a pixel; owned */
+    bool relit;           /* it is in the light that the edit makes */
 };
 enum { NO_PHOTO = -2147483647 - 1 };
 
@@ -35,6 +36,7 @@ struct level_views {
     } cameras;
     struct level_view *list;
     int count;
+    bool relit; /* all of them, in the light that the edit makes */
 };
 
 /* Traces the photos. ST_DATA: an unknown one. The caller releases v in each case. */

@@ -301,16 +301,20 @@ static enum status add_groups(const struct making *m, enum relit_kind kind, int 
     return err->status;
 }
 
-/* The sum of lamps and windows, in which the photographs were taken; without black places. */
-static enum status add_texture(struct relit_light *r, struct err *err)
+/* The sum of lamps and windows, in which the photographs were taken; without black places. Relit photographs also show
+ * the lamps that the edit adds. */
+static enum status add_texture(struct relit_light *r, bool relit, struct err *err)
 {
     float *values = calloc(rows_of(r) + 1, sizeof *values);
     struct weighted *room = malloc(((size_t)r->places + 1) * sizeof *room);
     if (!values || !room) err_nomem(err, "light of places", rows_of(r) * sizeof *values);
     for (int i = 0; !err->status && i < r->field_count; i++) {
         const struct relit_field *f = &r->fields[i];
-        if (f->kind == RELIT_LAMP && r->lamps[f->of].kind == RELIT_PLANNED) continue;
-        for (int k = 0; k < 3 * r->places; k++) values[k] += f->values[k];
+        const struct relit_lamp *planned =
+            f->kind == RELIT_LAMP && r->lamps[f->of].kind == RELIT_PLANNED ? &r->lamps[f->of] : NULL;
+        if (planned && !(relit && planned->on && r->scale > 0)) continue;
+        const float by = planned ? (float)(1 / r->scale) : 1;
+        for (int k = 0; k < 3 * r->places; k++) values[k] += by * f->values[k];
     }
     for (int i = 0; !err->status && i < r->places; i++) room[i] = (struct weighted){(double)values[3 * i + 1], 1};
     const double median = !err->status && r->places ? weighted_percentile(room, (size_t)r->places, 0.5) : 0;
@@ -594,7 +598,7 @@ static enum status add_parts(struct making *m, struct err *err)
         const int groups[] = {g->sky + v, g->sun + v};
         add_groups(m, RELIT_WINDOW, v, groups, 2, err);
     }
-    if (!err->status) add_texture(r, err);
+    if (!err->status) add_texture(r, m->from->views->relit, err);
     if (!err->status && g->factors) take_factors(r, g);
     return err->status ? err->status : add_skies(m, err);
 }

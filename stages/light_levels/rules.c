@@ -24,20 +24,15 @@ static void say_room(struct graph *g, const struct scene_facts *f, const char *m
 static void say_scripts(struct graph *g, const struct scene_facts *f)
 {
     static const char *const names[] = {"places", "states"};
-    const char *scale = PATH(g, LUX_SCALE);
+    const char *scale = scene_lux_scale(g, f);
     for (int i = 0; i < 2; i++) {
         const char *path = graph_scene_file(g, graph_text(g, "%s.txt", names[i]));
         if (path) rule_takes(g, graph_text(g, "--%s", names[i]), path);
         rule_needs(g, graph_stamp(g, graph_text(g, "%s.txt", names[i]), path ? path : "none"));
     }
-    /* photos need not say their exposure: without measurements the scale counts where `make luminance` has made it */
-    const bool scaled = graph_scene_file(g, "lux.txt") || path_is_file(scale);
-    if (scaled) rule_takes(g, "--scale", scale);
-    rule_needs(g, graph_stamp(g, "lux_scale.txt", scaled ? scale : "none"));
-    struct name_list webs = {0}; /* that states.txt may name */
-    name_list_add_files(&webs, f->folder, "", ".ies", graph_err(g));
-    for (int i = 0; i < webs.count; i++) rule_needs(g, graph_text(g, "%s/%s.ies", f->folder, webs.names[i]));
-    name_list_release(&webs);
+    if (scale) rule_takes(g, "--scale", scale);
+    rule_needs(g, graph_stamp(g, "lux_scale.txt", scale ? scale : "none"));
+    rule_needs_webs(g, f); /* that states.txt may name */
     rule_needs(g, graph_stamp(g, "weather.txt", scene_setting("WEATHER")));
     rule_needs(g, graph_stamp(g, "lux_day.txt", scene_setting("DAY")));
     if (*scene_setting("DAY")) rule_variable(g, "--day", "DAY");

@@ -6,7 +6,7 @@
 
 /* {0} is the empty state; everything but the names is owned. */
 struct lamp_light {
-    const char **names; /* of lights.txt */
+    const char **names; /* of lights.txt, then those that the edit adds */
     float (**light)[3]; /* irradiance from the lamp alone, of each pixel */
     int count;
 };

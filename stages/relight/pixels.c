@@ -14,6 +14,8 @@
  * Synthetic objects on the ray's way are noted with the part of the pixel that they cover, by 3 x 3 rays; what lies
  * behind them is relit as if they were not there, since it shows at their edges.
  *
+ * Luminous openings of lamps that the edit adds are noted in the same way. Lamps without a size are not seen.
+ *
  * Furniture's depth has errors: a point that seems to lie a little below a surface of the model would get no light,
  * so points are lifted by up to 2 % of the model's size.
  *
@@ -44,9 +46,10 @@ struct find_job {
     struct vec3 centre;
     const struct layered_depth *depth; /* NULL: none */
     const struct view_ids *ids;
-    struct view camera;           /* of the layers, model frame */
-    double scale;                 /* model units per scene unit */
-    struct object_pixel *objects; /* one a pixel; object -1: none */
+    struct view camera;             /* of the layers, model frame */
+    double scale;                   /* model units per scene unit */
+    struct object_pixel *objects;   /* one a pixel; object -1: none */
+    struct opening_pixel *openings; /* one a pixel; cover 0: none */
 };
 
 static enum status pixels_init(struct pixels *p, int width, int height, struct err *err)
@@ -77,6 +80,7 @@ void pixels_release(struct pixels *p)
     free(p->texel);
     free(p->is_new);
     free(p->objects);
+    free(p->openings);
     *p = (struct pixels){0};
 }
 
@@ -273,6 +277,29 @@ static void set_object(struct find_job *j, size_t i, int x, int y, double neares
     o->cover = (float)count / (SUB * SUB);
 }
 
+/* z: of furniture before the opening; INFINITY: none */
+static void set_opening(struct find_job *j, size_t i, int x, int y, double nearest)
+{
+    struct opening_pixel *o = &j->openings[i];
+    o->pixel = (int)i;
+    for (int v = 0; v < SUB; v++)
+        for (int u = 0; u < SUB; u++) {
+            struct vec3 d;
+            struct rgb radiance;
+            if (!pixel_ray(j, x + (u + 0.5) / SUB, y + (v + 0.5) / SUB, &d)) continue;
+            const struct vec3 unit = vec3_normalize(d);
+            const double length = vec3_length(d);
+            const struct met met = meet(j, d);
+            double t = met.face ? met.on_face.t * length : INFINITY;
+            if (met.object) t = fmin(t, met.on_object.t * length);
+            if (!edit_lamps_meet(&radiance, &j->c->lamps, &j->c->after, j->centre, unit, fmin(t, nearest))) continue;
+            o->cover += 1.0f / (SUB * SUB);
+            o->rgb[0] += (float)radiance.r / (SUB * SUB);
+            o->rgb[1] += (float)radiance.g / (SUB * SUB);
+            o->rgb[2] += (float)radiance.b / (SUB * SUB);
+        }
+}
+
 /* --------------------------------------------------------------------------------------------------------- pictures */
 
 static void find_row(struct find_job *j, int y)
@@ -296,6 +323,7 @@ static void find_row(struct find_job *j, int y)
         else if (met.face && met.on_face.front && j->picture->made[i] != MADE_OUTDOORS)
             set_face(j, i, &met.on_face);
         if (j->objects) set_object(j, i, x, y, nearest);
+        if (j->openings) set_opening(j, i, x, y, nearest);
     }
 }
 
@@ -325,6 +353,17 @@ static enum status list_objects(struct pixels *p, const struct object_pixel *obj
         if (objects[i].object < 0) continue;
         if (array_append(&p->objects, (size_t)p->object_count, sizeof *p->objects, "pixels", err)) return err->status;
         p->objects[p->object_count++] = objects[i];
+    }
+    return ST_OK;
+}
+
+static enum status list_openings(struct pixels *p, const struct opening_pixel *openings, struct err *err)
+{
+    for (int i = 0; i < p->width * p->height; i++) {
+        if (!(openings[i].cover > 0)) continue;
+        if (array_append(&p->openings, (size_t)p->opening_count, sizeof *p->openings, "pixels", err))
+            return err->status;
+        p->openings[p->opening_count++] = openings[i];
     }
     return ST_OK;
 }
@@ -360,9 +399,13 @@ enum status pixels_find(struct pixels *p, const struct light_change *c, const st
     }
     if (!err->status && c->objects.count && !(j.objects = calloc(n + 1, sizeof *j.objects)))
         err_nomem(err, "pixels of objects", n * sizeof *j.objects);
+    if (!err->status && c->lamps.planned.count && !(j.openings = calloc(n + 1, sizeof *j.openings)))
+        err_nomem(err, "pixels of lamps", n * sizeof *j.openings);
     if (!err->status) parallel_for((size_t)picture->height, 4, find_rows, &j);
     if (!err->status && j.objects) list_objects(p, j.objects, err);
+    if (!err->status && j.openings) list_openings(p, j.openings, err);
     free(j.objects);
+    free(j.openings);
     layered_depth_release(&depth);
     view_ids_release(&ids);
     return err->status;

@@ -21,6 +21,13 @@ struct object_pixel {
     struct vec3 to_viewer; /* unit */
 };
 
+/* The luminous opening of a lamp that the edit adds, in a pixel. */
+struct opening_pixel {
+    int pixel;
+    float cover;  /* part of the pixel */
+    float rgb[3]; /* radiance times that part */
+};
+
 /* {0} is the empty state; everything is owned. Pixels are in rows. */
 struct pixels {
     int width, height;
@@ -34,6 +41,8 @@ struct pixels {
     struct vec3 centre;                  /* of the camera */
     struct object_pixel *objects;
     int object_count;
+    struct opening_pixel *openings;
+    int opening_count;
     bool is_black; /* all but nothing is drawn: all pixels are kept */
 };
 

@@ -22,6 +22,9 @@
  * What furniture hid was filled from around it, in the light of there (update_vita): where the edit changes furniture,
  * such texels take the quotient of the atlas, too.
  *
+ * Lamps that the edit adds (edit_lamps.h) are in neither field: their light is added to that after the edit at each
+ * pixel, and their openings are drawn.
+ *
  * Furniture that no depth tells (free cameras) gets the quotient of the shell behind it. */
 #include "stages/relight/relit.h"
 
@@ -148,6 +151,33 @@ static enum status gather(struct relit *r, const struct pixels *p, const struct 
     return err->status;
 }
 
+/* -------------------------------------------------------------------------------------------- lamps of the edit */
+
+struct lamps_job {
+    struct relit *r;
+    const struct pixels *p;
+    const struct light_change *c;
+};
+
+static void light_some(void *ctx, size_t begin, size_t end, int thread)
+{
+    const struct lamps_job *j = ctx;
+    (void)thread;
+    for (size_t i = begin; i < end; i++) {
+        const struct gather_point *p = &j->p->after[i];
+        if (!(vec3_length(p->normal) > 0)) continue;
+        struct rgb *light = &j->r->after[i].value;
+        *light = rgb_add(*light, edit_lamps_light(&j->c->lamps, -1, &j->c->after, *p, i));
+    }
+}
+
+/* Lamps that the edit adds shine on each pixel, beyond what caches interpolate. */
+static void add_lamps(struct relit *r, const struct pixels *p, const struct light_change *c)
+{
+    struct lamps_job j = {r, p, c};
+    if (c->lamps.planned.count) parallel_for((size_t)p->width * (size_t)p->height, 64, light_some, &j);
+}
+
 /* ------------------------------------------------------------------------------------------------------------ gloss */
 
 /* The reflectance of a pixel's gloss; false: it is matt. *viewpoint: from where its texel was photographed. */
@@ -233,8 +263,10 @@ static void find_some(void *ctx, size_t begin, size_t end, int thread)
         if (j->r->specular && gloss_of(&after, &before, &viewpoint, j, i)) {
             set(j->r->specular[i][0],
                 reflected(&j->c->before.plain, j->p->before[i], &before, viewpoint, j->params, i));
+            const struct vec3 view = vec3_normalize(vec3_sub(j->p->centre, j->p->after[i].at));
             set(j->r->specular[i][1],
-                reflected(&j->c->after.plain, j->p->after[i], &after, j->p->centre, j->params, i));
+                rgb_add(reflected(&j->c->after.plain, j->p->after[i], &after, j->p->centre, j->params, i),
+                        edit_lamps_gloss(&j->c->lamps, &j->c->after, j->p->after[i], &after, view, i)));
         }
         if (j->p->kind[i] != PIXEL_COLOUR) find_quotient(j, i);
     }
@@ -355,6 +387,8 @@ static void shade_some(void *ctx, size_t begin, size_t end, int thread)
         ray_irradiance_to(&e, f, o->point, j->params->target_error, j->params->rays, key);
         if (b->gloss > 0)
             specular_integral(&s, f, o->point, b, o->to_viewer, j->params->target_error, j->params->rays, key);
+        e.value = rgb_add(e.value, edit_lamps_light(&j->c->lamps, -1, &j->c->after, o->point, key));
+        s.value = rgb_add(s.value, edit_lamps_gloss(&j->c->lamps, &j->c->after, o->point, b, o->to_viewer, key));
         set(j->shaded[k], rgb_add(rgb_scale(rgb_multiply(b->albedo, e.value), 1 / PI), s.value));
         if (o->cover < COVERED) continue;
         j->r->after[o->pixel] = e;
@@ -378,6 +412,20 @@ static enum status shade_objects(struct apply_job *j, struct err *err)
     }
     free(j->shaded);
     return ST_OK;
+}
+
+/* Lamps that the edit adds are as bright as they are, whatever light falls on them. */
+static void show_openings(struct apply_job *j)
+{
+    for (int k = 0; k < j->p->opening_count; k++) {
+        const struct opening_pixel *o = &j->p->openings[k];
+        float *pixel = j->picture->rgb + 3 * (size_t)o->pixel;
+        if (j->picture->made[o->pixel] == MADE_NOTHING) continue; /* beyond what is drawn */
+        for (int c = 0; c < 3; c++) pixel[c] = (1 - o->cover) * pixel[c] + o->rgb[c];
+        if (o->cover < COVERED) continue;
+        set_quotient(j->r, (size_t)o->pixel, rgb_grey(1), RELIT_SURE);
+        j->picture->made[o->pixel] = MADE_COLOUR;
+    }
 }
 
 static double mean_light(const struct relit *r)
@@ -446,13 +494,14 @@ enum status relit_make(struct relit *r, struct model_picture *picture, const str
     const bool is_gathered = strcmp(params->light, "atlas") != 0;
     if (!err->status) find_median(&r->median[0], &j, err);
     if (!err->status && is_gathered && !p->is_black) gather(r, p, c, params, err);
+    if (!err->status && is_gathered) add_lamps(r, p, c);
     if (!err->status) {
         j.dark = DARK * mean_light(r);
         if (is_gathered) parallel_for(n, 256, find_some, &j);
         if (is_gathered && !quotients_settle(r->quotient, r->error, p, params, err)) fit_penumbra(&j, err);
         if (is_gathered && !err->status) dark_points_fill(r->quotient, r->before, r->after, p, c->things.changes, err);
         if (!err->status) parallel_for(n, 256, is_gathered ? apply_some : apply_atlas, &j);
-        if (!err->status) shade_objects(&j, err);
+        if (!err->status && !shade_objects(&j, err)) show_openings(&j);
     }
     if (!err->status) find_median(&r->median[1], &j, err);
     free(j.glosses);

@@ -285,6 +285,8 @@ static void trace_some(void *ctx, size_t begin, size_t end, int thread)
         row->before = row->gathered;
         row->own = clamp((covered / (double)j->rays - IN_SIGHT) / (HIDDEN - IN_SIGHT), 0, 1);
         row->fixed = gather(t, &j->tallies[thread], NULL, &t->change->after.field, s->after, j->rays, i);
+        row->fixed =
+            rgb_add(row->fixed, edit_lamps_light(&t->change->lamps, -1, &t->change->after, s->after, (uint64_t)i));
         if (!keep_entries(row, &j->tallies[thread], PI / j->rays)) j->is_short = true;
     }
     if (j->done) j->done(j->done_ctx, (int64_t)(end - begin));

@@ -14,6 +14,7 @@
 
 #include "common/base/log.h"
 #include "common/base/progress.h"
+#include "common/model/model_metre.h"
 #include "common/product/product.h"
 #include "common/relight/light_quotient.h"
 #include "stages/update_vita/edited_atlas.h"
@@ -174,6 +175,18 @@ static enum status write_objects(struct work *w, struct err *err)
     return light_objects_write_light(o, path, &w->job->prov, err);
 }
 
+/* Lamps that the edit adds, in a scene where nothing says how bright they are beside the photographs. */
+static void warn_of_lamps(const struct light_change *c)
+{
+    if (c->map.planned_count > c->lamps.planned.count)
+        log_warn("lx of the photographs' light are not known, so that lamps which the edit adds do not shine in relit "
+                 "pictures. Measure a point (scenes/NAME/lux.txt), or run make luminance.");
+    else if (c->lamps.planned.count && !c->axes.metric)
+        log_warn("the scene has no scale, so that a metre is a guess: %.3g units, by rooms %g m high. It sets how "
+                 "bright the lamps are that the edit adds. Give the scale as docs/model-script.md explains.",
+                 c->lamps.metre, MODEL_METRE_ROOM);
+}
+
 static void tell(const struct work *w)
 {
     const struct rounds *r = &w->rounds;
@@ -198,6 +211,7 @@ static enum status run(struct work *w, struct err *err)
         rounds_run(&w->rounds, &w->transport, j->params.rounds, j->params.tolerance, err))
         return err->status;
     tell(w);
+    warn_of_lamps(&w->change);
     if (write_rounds(w, err) || write_objects(w, err) || file_path(vita, j->out, "vita", "", err)) return err->status;
     return edited_atlas_write(&w->atlas, &w->change, &w->nets, w->rounds.values, j->files.vita, vita, &j->prov, err);
 }

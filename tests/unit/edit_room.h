@@ -101,6 +101,7 @@ struct edit {
     struct texture_map map;    /* its faces are the test's */
     const char *objects;       /* lines of objects.txt after its header, with %s for the hash of `mesh`; NULL: none */
     const char *mesh;          /* mesh.obj */
+    const char *lux_scale;     /* scale.txt, in a model in metres; NULL: none */
     struct light_change_files files;
 };
 
@@ -153,7 +154,7 @@ static inline const char *write_objects(const char *lines, const char *mesh)
 /* Writes all files of the edit. */
 static inline void edit_write(struct edit *e)
 {
-    static const struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1};
+    const struct model_axes axes = {.rotation = {1, 0, 0, 0}, .scale = 1, .metric = e->lux_scale != NULL};
     struct err err = ERR_INIT;
     write_vita(e->colours, 6, 0);
     e->files = (struct light_change_files){.base = write_slabs("base.txt", e->before, e->before_count),
@@ -168,6 +169,7 @@ static inline void edit_write(struct edit *e)
         e->files.lights = keep_path("lights.txt");
     }
     if (e->sky > 0) e->files.outdoors = write_sky(e->sky);
+    if (e->lux_scale) e->files.lux_scale = e->lux_scale, e->files.scene = keep_path("");
     if (e->objects) {
         e->files.objects = write_objects(e->objects, e->mesh);
         e->files.scene = keep_path("");
