@@ -2,6 +2,7 @@
  *
  * reads   MODEL/model.txt, plan.txt                     the model; of an edit also MAP, texture.txt
  *         OBJECTS, SCENE/FILE.obj                       of an edit: the synthetic objects and their meshes
+ *         SCENE/FILE.ies                                of an edit: the photometry of lamps that it adds
  *         THINGS/things.txt, volume.exr                 furniture; of an edit that changes it also BASE, the old model
  *         AXES                                          whether its lengths are metres
  *         VITA/atlas.txt, page0.exr, ...                the view-independent texture atlas
@@ -21,6 +22,7 @@ struct job {
     struct export_faces faces;
     struct export_objects inserted;
     struct export_things furniture;
+    struct export_lamps lamps;
 };
 
 static enum status read_inputs(struct job *j, struct provenance *prov, struct err *err)
@@ -31,7 +33,8 @@ static enum status read_inputs(struct job *j, struct provenance *prov, struct er
         product_path_in(plan, j->model, PRODUCT_PLAN, NULL, err) ||
         scene_inputs_read(&j->in, SCENE_AXES | SCENE_MESH | SCENE_PLAN, &files, prov, err) ||
         (j->map && texture_map_read(&j->texture, j->map, prov, err)) ||
-        export_objects_read(&j->inserted, j->objects, j->scene, prov, err))
+        export_objects_read(&j->inserted, j->objects, j->scene, prov, err) ||
+        (j->map && export_lamps_read(&j->lamps, &j->texture, j->scene, &j->in.axes, &j->in.plan, prov, err)))
         return err->status;
     const struct export_thing_files things = {j->things, model, j->base, j->map};
     if (export_things_read(&j->furniture, &things, j->map ? &j->texture : NULL, prov, err)) return err->status;
@@ -53,6 +56,7 @@ static enum status export_all(struct job *j, struct provenance *prov, struct err
                                        .faces = &j->faces,
                                        .plan = &j->in.plan,
                                        .objects = &j->inserted,
+                                       .lamps = &j->lamps,
                                        .things = &j->furniture,
                                        .page_sizes = (const int(*)[2])j->atlas.page_sizes,
                                        .page_count = j->atlas.page_count,
@@ -75,7 +79,8 @@ int main(int argc, char **argv)
         CLI_STR("base", &j.base, CLI_OPTIONAL, "of an edited model: model.txt of the unedited one, for --things"),
         CLI_STR("things", &j.things, CLI_OPTIONAL, "folder of find_things, whose furniture is exported, too"),
         CLI_STR("objects", &j.objects, CLI_OPTIONAL, "of an edited model: its objects.txt"),
-        CLI_STR("scene", &j.scene, CLI_OPTIONAL, "with --objects: folder of the meshes that it names"),
+        CLI_STR("scene", &j.scene, CLI_OPTIONAL,
+                "of an edited model: folder of the meshes and IES files that it names"),
         CLI_STR("axes", &j.axes, CLI_REQUIRED, "the model's frame, axes.txt"),
         CLI_STR("vita", &j.vita, CLI_REQUIRED, "folder of the view-independent texture atlas"),
         CLI_STR("out", &j.out, CLI_REQUIRED, "folder to write to"),
@@ -88,6 +93,7 @@ int main(int argc, char **argv)
     export_faces_release(&j.faces);
     export_objects_release(&j.inserted);
     export_things_release(&j.furniture);
+    export_lamps_release(&j.lamps);
     atlas_release(&j.atlas);
     texture_map_release(&j.texture);
     scene_inputs_release(&j.in);

@@ -64,6 +64,8 @@ int ifc_prism(struct ifc *f, const double (*corners)[2], int count, const double
 int ifc_polyhedron(struct ifc *f, const struct vec3 *corners, const int *ends, int count);
 /* All triangles of the faces KIND/NAME and KIND/NAME/PART. */
 int ifc_faces_of(struct ifc *f, const char *kind, const char *name);
+/* An IfcShapeRepresentation; identifier: Body, Lighting. */
+int ifc_representation(struct ifc *f, const char *identifier, const char *type, const struct ifc_ids *items);
 /* A shape of IfcTriangulatedFaceSets. */
 int ifc_tessellation(struct ifc *f, const struct ifc_ids *sets);
 /* Triangles first .. end - 1 as an IfcTriangulatedFaceSet; of a page, with its texture map. */
@@ -96,6 +98,18 @@ enum status ifc_walls(struct ifc *f); /* with their openings, doors and windows 
 enum status ifc_rooms(struct ifc *f); /* slabs with their openings, and spaces */
 enum status ifc_boxes(struct ifc *f);
 
-enum status ifc_objects(struct ifc *f); /* ifc_objects.c: synthetic objects, then furniture */
+/* ifc_objects.c */
+
+/* An IfcSurfaceStyle of one colour. */
+int ifc_style(struct ifc *f, const char *name, const double colour[3]);
+/* An IfcTriangulatedFaceSet. corners NULL: each three points are a triangle. */
+int ifc_triangle_set(struct ifc *f, const struct vec3 *points, int point_count, const int (*corners)[3], int count);
+enum status ifc_objects(struct ifc *f); /* synthetic objects, then furniture */
+
+/* ifc_lamps.c: an IfcLightFixture for each lamp that an edit adds */
+
+/* Numbers of the units that they need. */
+enum status ifc_lamp_units(struct ifc *f, struct ifc_ids *units);
+enum status ifc_lamps(struct ifc *f);
 
 #endif

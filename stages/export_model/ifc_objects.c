@@ -6,7 +6,7 @@
 
 enum { MAX_KEY = 300 };
 
-static int put_style(struct ifc *f, const char *name, const double colour[3])
+int ifc_style(struct ifc *f, const char *name, const double colour[3])
 {
     char r[40], g[40], b[40];
     const int rgb =
@@ -18,8 +18,7 @@ static int put_style(struct ifc *f, const char *name, const double colour[3])
     return style;
 }
 
-/* An IfcTriangulatedFaceSet. corners NULL: each three points are a triangle. */
-static int put_triangles(struct ifc *f, const struct vec3 *points, int point_count, const int (*corners)[3], int count)
+int ifc_triangle_set(struct ifc *f, const struct vec3 *points, int point_count, const int (*corners)[3], int count)
 {
     const int list = ifc_points(f, points, point_count);
     const int set = ifc_next(f);
@@ -34,7 +33,7 @@ static int put_triangles(struct ifc *f, const struct vec3 *points, int point_cou
 
 static enum status put_furniture(struct ifc *f, const char *key, const char *name, int set, const double colour[3])
 {
-    ifc_put(f, "IFCSTYLEDITEM(#%d,(#%d),$)", set, put_style(f, name, colour));
+    ifc_put(f, "IFCSTYLEDITEM(#%d,(#%d),$)", set, ifc_style(f, name, colour));
     const int shape = ifc_tessellation(f, &(struct ifc_ids){&set, 1});
     return ifc_keep(f, &f->contained, ifc_element_of(f, "IFCFURNITURE", key, name, shape, ",.NOTDEFINED."));
 }
@@ -45,7 +44,7 @@ enum status ifc_objects(struct ifc *f)
     for (int i = 0; !f->err->status && i < objects->list.count; i++) {
         const struct object *o = &objects->list.items[i];
         const struct obj_mesh *mesh = &objects->meshes[i];
-        const int set = put_triangles(f, (const struct vec3 *)mesh->triangles, 3 * mesh->count, NULL, mesh->count);
+        const int set = ifc_triangle_set(f, (const struct vec3 *)mesh->triangles, 3 * mesh->count, NULL, mesh->count);
         const double colour[3] = {o->brdf.albedo.r, o->brdf.albedo.g, o->brdf.albedo.b};
         put_furniture(f, o->name, o->name, set, colour);
     }
@@ -53,7 +52,7 @@ enum status ifc_objects(struct ifc *f)
         const struct export_thing *t = &f->s->things->things[i];
         const struct thing_mesh *m = &t->mesh;
         const int set =
-            put_triangles(f, m->vertices, m->vertex_count, (const int(*)[3])m->triangles, m->triangle_count);
+            ifc_triangle_set(f, m->vertices, m->vertex_count, (const int(*)[3])m->triangles, m->triangle_count);
         char key[MAX_KEY]; /* an object may have the same name */
         double colour[3];
         snprintf(key, sizeof key, "thing/%s", t->name);

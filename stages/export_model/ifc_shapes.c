@@ -4,13 +4,19 @@
 
 #include "stages/export_model/ifc.h"
 
+int ifc_representation(struct ifc *f, const char *identifier, const char *type, const struct ifc_ids *items)
+{
+    const int id = ifc_next(f);
+    fprintf(f->to, "#%d=IFCSHAPEREPRESENTATION(#%d,'%s','%s',", id, f->context, identifier, type);
+    ifc_put_ids(f, items);
+    fputs(");\n", f->to);
+    return id;
+}
+
 /* The shape of one representation item. */
 static int put_shape(struct ifc *f, const char *type, const struct ifc_ids *items)
 {
-    const int body = ifc_next(f);
-    fprintf(f->to, "#%d=IFCSHAPEREPRESENTATION(#%d,'Body','%s',", body, f->context, type);
-    ifc_put_ids(f, items);
-    fputs(");\n", f->to);
+    const int body = ifc_representation(f, "Body", type, items);
     return ifc_put(f, "IFCPRODUCTDEFINITIONSHAPE($,$,(#%d))", body);
 }
 

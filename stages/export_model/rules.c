@@ -18,6 +18,7 @@ RULES(export_model)
         rule_takes(g, "--base", map ? PATH(g, MODEL) : NULL);
         rule_takes_things(g, f);
         rule_takes(g, "--objects", map ? PATH(g, OBJECTS, .model = model) : NULL);
+        if (map) rule_needs_webs(g, f);
         rule_option(g, "--scene", map ? f->folder : NULL);
         rule_takes(g, "--axes", PATH(g, AXES));
         rule_takes_vita(g);

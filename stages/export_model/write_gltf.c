@@ -8,7 +8,8 @@
  * first, then glass, then the colours in order of the triangles. So the order of everything follows from the model,
  * and the same model gives the same bytes. Vertices are not shared between triangles: faces are flat, each has its
  * own normal, and the corners of two tiles have different texture coordinates. Synthetic objects follow, then
- * furniture, a node and a material each. Furniture has thousands of triangles of a curved surface, so these do share
+ * lamps that an edit adds (extension KHR_lights_punctual) with their luminous openings, then furniture, a node and a
+ * material each. Furniture has thousands of triangles of a curved surface, so these do share
  * their vertices, and have no normals, which unlit materials do not need.
  *
  * glTF's y points up and its z to the viewer, so a point (x, y, z) becomes (x, z, -y). Textures hold the light of
@@ -40,7 +41,7 @@ struct bytes {
 struct gltf {
     const struct export_scene *s;
     struct bytes bin;
-    json_t *views, *accessors, *meshes, *nodes, *materials, *children;
+    json_t *views, *accessors, *meshes, *nodes, *materials, *children, *lights;
     int colours; /* materials of colours so far */
     struct err *err;
 };
@@ -247,6 +248,70 @@ static enum status add_objects(struct gltf *g)
     return g->err->status;
 }
 
+/* The luminous opening as a fan of triangles, seen from the side to which it shines. */
+static json_t *opening_of(struct gltf *g, int lamp)
+{
+    const struct planned_lamp *l = &g->s->lamps->planned.list[lamp];
+    struct vec3 corners[PLANNED_LAMP_CORNERS];
+    float at[9 * PLANNED_LAMP_CORNERS], n[9 * PLANNED_LAMP_CORNERS];
+    const int count = 3 * (export_lamps_outline(corners, g->s->lamps, lamp) - 2);
+    const json_int_t material = (json_int_t)json_array_size(g->materials);
+    double c[3];
+    for (int k = 0; k < count; k++) {
+        put_point(at + 3 * k, corners[k % 3 ? k / 3 + k % 3 : 0]);
+        put_point(n + 3 * k, l->down);
+    }
+    export_lamps_colour(c, l);
+    json_array_append_new(g->materials,
+                          unlit(l->name, json_pack("{s:[f,f,f,f]}", "baseColorFactor", c[0], c[1], c[2], 1.0)));
+    return primitive_of(g, at, n, NULL, (size_t)count, (int)material);
+}
+
+/* A light shines along its node's -z. */
+static json_t *lamp_matrix(const struct planned_lamp *l)
+{
+    const struct vec3 z = vec3_scale(l->down, -1), x = l->along, y = vec3_cross(z, x);
+    float axes[4][3];
+    put_point(axes[0], x);
+    put_point(axes[1], y);
+    put_point(axes[2], z);
+    put_point(axes[3], l->at);
+    json_t *m = json_array();
+    for (int i = 0; i < 16; i++) json_array_append_new(m, json_real(i % 4 == 3 ? i == 15 : (double)axes[i / 4][i % 4]));
+    return m;
+}
+
+static enum status add_lamp(struct gltf *g, int lamp)
+{
+    const struct planned_lamp *l = &g->s->lamps->planned.list[lamp];
+    char name[MAX_OBJECT_NAME];
+    struct lamp_cone cone;
+    double c[3];
+    snprintf(name, sizeof name, "lamp/%s", l->name);
+    add_node(g, name, json_pack("[o]", opening_of(g, lamp)));
+    const bool is_cone = export_lamps_cone(&cone, l);
+    export_lamps_colour(c, l);
+    cone.candela /= rgb_luminance(rgb_make(c[0], c[1], c[2])); /* programs multiply it by the colour */
+    json_t *light = json_pack("{s:s, s:s, s:[f,f,f], s:f, s:{s:s, s:f}}", "name", l->name, "type",
+                              is_cone ? "spot" : "point", "color", c[0], c[1], c[2], "intensity", cone.candela,
+                              "extras", "ies", g->s->lamps->files[lamp], "lumens", export_lamps_lumens(l));
+    if (is_cone)
+        json_object_set_new(light, "spot",
+                            json_pack("{s:f, s:f}", "innerConeAngle", cone.inner, "outerConeAngle", cone.outer));
+    json_array_append_new(g->children, json_integer((json_int_t)json_array_size(g->nodes)));
+    json_array_append_new(g->nodes,
+                          json_pack("{s:s, s:o, s:{s:{s:I}}}", "name", l->name, "matrix", lamp_matrix(l), "extensions",
+                                    "KHR_lights_punctual", "light", (json_int_t)json_array_size(g->lights)));
+    json_array_append_new(g->lights, light);
+    return g->err->status;
+}
+
+static enum status add_lamps(struct gltf *g)
+{
+    for (int i = 0; !g->err->status && i < g->s->lamps->planned.count; i++) add_lamp(g, i);
+    return g->err->status;
+}
+
 /* An accessor of the corners of triangles. */
 static enum status add_triangles(struct gltf *g, const struct thing_mesh *mesh, json_int_t *index)
 {
@@ -366,10 +431,11 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
     g.nodes = json_array();
     g.materials = json_array();
     g.children = json_array();
+    g.lights = json_array();
     json_t *images = json_array(), *textures = json_array();
     add_materials(&g);
     for (int i = 0; !err->status && i < s->page_count; i++) add_picture(&g, images, textures, i);
-    if (!err->status && !add_bodies(&g) && !add_objects(&g)) add_things(&g);
+    if (!err->status && !add_bodies(&g) && !add_objects(&g) && !add_lamps(&g)) add_things(&g);
     json_t *root = json_pack("{s:{s:s, s:s}, s:[s], s:i, s:[{s:s, s:O}], s:O, s:O, s:O, s:O, s:O, s:[{s:I}]}", "asset",
                              "version", "2.0", "generator", "remodel " REMODEL_VERSION, "extensionsUsed",
                              "KHR_materials_unlit", "scene", 0, "scenes", "name", s->name, "nodes", g.children, "nodes",
@@ -382,6 +448,10 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
         json_object_set_new(
             root, "samplers",
             json_pack("[{s:i, s:i, s:i, s:i}]", "magFilter", 9729, "minFilter", 9987, "wrapS", 33071, "wrapT", 33071));
+    }
+    if (root && json_array_size(g.lights)) {
+        json_array_append_new(json_object_get(root, "extensionsUsed"), json_string("KHR_lights_punctual"));
+        json_object_set_new(root, "extensions", json_pack("{s:{s:O}}", "KHR_lights_punctual", "lights", g.lights));
     }
     char *text = root ? json_dumps(root, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
     if (!err->status && starved) err_nomem(err, "a glTF model", g.bin.size);
@@ -398,5 +468,6 @@ enum status write_gltf(const struct export_scene *s, struct err *err)
     json_decref(g.nodes);
     json_decref(g.materials);
     json_decref(g.children);
+    json_decref(g.lights);
     return err->status;
 }

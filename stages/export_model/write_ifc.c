@@ -3,7 +3,8 @@
  * Walls, slabs and spaces are extruded outlines (ifc_walls.c, ifc_rooms.c); an opening is a box that voids its wall or
  * slab, and a door or window fills it (ifc_fillings.c). Walls that are along no axis are the triangles of their faces.
  * Walls, openings, doors, windows, spaces and coverings have their lengths, areas and volumes (ifc_quantities.c).
- * An object or a piece of furniture is an IfcFurniture of triangles in one colour (ifc_objects.c).
+ * An object or a piece of furniture is an IfcFurniture of triangles in one colour (ifc_objects.c), a lamp that an edit
+ * adds an IfcLightFixture with its photometry (ifc_lamps.c).
  * Photographic texture is on coverings: each face of the model is an IfcCovering of triangles, with the texture maps
  * that IFC4 defines for IfcTriangulatedFaceSet, so that readers without textures lose nothing of the building. */
 #include <stdlib.h>
@@ -21,7 +22,16 @@ static int put_units(struct ifc *f)
     const int area = ifc_put(f, "IFCSIUNIT(*,.AREAUNIT.,$,.SQUARE_METRE.)");
     const int volume = ifc_put(f, "IFCSIUNIT(*,.VOLUMEUNIT.,$,.CUBIC_METRE.)");
     const int angle = ifc_put(f, "IFCSIUNIT(*,.PLANEANGLEUNIT.,$,.RADIAN.)");
-    return ifc_put(f, "IFCUNITASSIGNMENT((#%d,#%d,#%d,#%d))", length, area, volume, angle);
+    struct ifc_ids units = {0};
+    const int own[] = {length, area, volume, angle};
+    for (int i = 0; i < 4; i++) ifc_keep(f, &units, own[i]);
+    if (f->s->lamps->planned.count) ifc_lamp_units(f, &units);
+    const int assignment = ifc_next(f);
+    fprintf(f->to, "#%d=IFCUNITASSIGNMENT(", assignment);
+    ifc_put_ids(f, &units);
+    fputs(");\n", f->to);
+    free(units.list);
+    return assignment;
 }
 
 static int put_part(struct ifc *f, const char *kind, const char *name, const char *rest)
@@ -108,7 +118,7 @@ static enum status put_body(struct ifc *f)
 {
     put_head(f);
     put_pages(f);
-    if (!ifc_walls(f) && !ifc_rooms(f) && !ifc_boxes(f)) ifc_objects(f);
+    if (!ifc_walls(f) && !ifc_rooms(f) && !ifc_boxes(f) && !ifc_objects(f)) ifc_lamps(f);
     for (int i = 0; !f->err->status && i < f->s->mesh->face_count; i++) put_covering(f, i);
     if (!f->err->status && f->contained.count) {
         ifc_begin(f, "IFCRELCONTAINEDINSPATIALSTRUCTURE", "elements");

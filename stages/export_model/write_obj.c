@@ -1,5 +1,5 @@
 /* write_obj.c - Wavefront OBJ, model.obj with model.mtl: an object for each body, a group for each face name, then the
- * synthetic objects, then the furniture; z is up. */
+ * synthetic objects, then the luminous openings of lamps, then the furniture; z is up. */
 #include <stdio.h>
 
 #include "stages/export_model/writers.h"
@@ -59,6 +59,23 @@ static void put_objects(FILE *to, const struct export_scene *s)
     }
 }
 
+/* Luminous openings, which emit light (Ke); the format has no lamps, so a comment has the rest. */
+static void put_lamps(FILE *to, const struct export_scene *s)
+{
+    for (int i = 0; i < s->lamps->planned.count; i++) {
+        const struct planned_lamp *l = &s->lamps->planned.list[i];
+        struct vec3 p[PLANNED_LAMP_CORNERS];
+        const int count = export_lamps_outline(p, s->lamps, i);
+        fprintf(to, "# lamp %s: %s, %.6g lm, at %.9g %.9g %.9g aim %.9g %.9g %.9g\n", l->name, s->lamps->files[i],
+                export_lamps_lumens(l), l->at.x, l->at.y, l->at.z, l->down.x, l->down.y, l->down.z);
+        fprintf(to, "o lamp/%s\ng lamp/%s\nusemtl lamp_%s\n", l->name, l->name, l->name);
+        for (int k = 0; k < count; k++) fprintf(to, "v %.9g %.9g %.9g\n", p[k].x, p[k].y, p[k].z);
+        fprintf(to, "vn %.9g %.9g %.9g\nf", l->down.x, l->down.y, l->down.z);
+        for (int k = count; k > 0; k--) fprintf(to, " -%d//-1", k);
+        fputc('\n', to);
+    }
+}
+
 /* Curved surfaces, whose triangles share corners. */
 static void put_things(FILE *to, const struct export_scene *s)
 {
@@ -81,6 +98,7 @@ static void put_model(FILE *to, const struct export_scene *s)
 {
     put_faces(to, s);
     put_objects(to, s);
+    put_lamps(to, s);
     put_things(to, s);
 }
 
@@ -103,6 +121,12 @@ static void put_materials(FILE *to, const struct export_scene *s)
         const struct object *o = &s->objects->list.items[i];
         fprintf(to, "newmtl object_%s\nKa 0 0 0\nKd %.6g %.6g %.6g\nKs 0 0 0\nillum 1\n", o->name, o->brdf.albedo.r,
                 o->brdf.albedo.g, o->brdf.albedo.b);
+    }
+    for (int i = 0; i < s->lamps->planned.count; i++) {
+        double c[3];
+        export_lamps_colour(c, &s->lamps->planned.list[i]);
+        fprintf(to, "newmtl lamp_%s\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nKe %.6g %.6g %.6g\nillum 1\n",
+                s->lamps->planned.list[i].name, c[0], c[1], c[2]);
     }
     for (int i = 0; i < s->things->count; i++) {
         double c[3];

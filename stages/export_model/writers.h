@@ -5,6 +5,7 @@
 #include "common/model/model_plan.h"
 #include "common/product/exports.h"
 #include "stages/export_model/export_faces.h"
+#include "stages/export_model/export_lamps.h"
 #include "stages/export_model/export_objects.h"
 #include "stages/export_model/export_things.h"
 
@@ -14,6 +15,7 @@ struct export_scene {
     const struct export_faces *faces;
     const struct model_plan *plan;
     const struct export_objects *objects; /* that an edit puts into the model */
+    const struct export_lamps *lamps;     /* that an edit adds */
     const struct export_things *things;   /* furniture that the photographs show */
     const int (*page_sizes)[2];
     int page_count;

@@ -12,6 +12,9 @@ printf 'remodel-script 1\nclear screen\nmove cube by 1 0.5 0.1\ncopy cube as sec
 # a wedge of 1 x 1 x 1: 8 triangles, since its rectangles become two each
 printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 0 1 1\nf 4 3 2 1\nf 1 2 5\nf 4 6 3\nf 1 5 6 4\nf 2 3 6 5\n' >scenes/t/wedge.obj
 printf 'remodel-script 1\nobject wedge wedge.obj at 5 7 0 turn 90 scale 2 4 3 matt 0.5 0.25 0.125\nobject ball wedge.obj at -9 -9 1 phong 0.2 0.4 0.3 0.05 20\n' >scenes/t/edits/object.txt
+# 1000 cd to all sides below, from a square of 2 m, and warm light
+printf 'IESNA:LM-63-2002\nTILT=NONE\n1 -1 1 2 1 1 2 2 2 0\n1 1 60\n0 90\n0\n1000 1000\n' >scenes/t/panel.ies
+printf 'remodel-script 1\nlamp new ies panel.ies at 5 7 15 colour 2 1 0.5\n' >scenes/t/edits/lit.txt
 make -s DEPS=manual PHOTOS=set/photos SFM=set/model SCENE=t exports >log 2>&1 || { cat log; fail "make exports"; }
 E=$PWD/out/t/remodel/bare/export
 
@@ -174,6 +177,28 @@ objects_of_an_edit_are_in_every_format()
     fi
 }
 
+# the panel's 2 pi 1000 lm: an emitting face, a light of glTF, and photometry of IFC
+lamps_of_an_edit_are_in_every_format()
+{
+    local F=out/t/remodel/lit/export rest
+    grep -q '^# lamp new: panel.ies, 6283.19 lm, at 5 7 15 aim 0 0 -1$' $F/model.obj && grep -A5 '^newmtl lamp_new$' $F/model.mtl | matches '^Ke 1 0.5 0.25$' ||
+        { grep -A8 lamp $F/model.obj $F/model.mtl; fail "model.obj has not the lamp"; }
+    # a room of 20 units is 8 metres of 2.5 high: the panel is 16 units wide, seen from below
+    awk '$1 == "o" { at = $2 } at == "lamp/new" && $1 == "v" { n++; x[n] = $2; y[n] = $3; z += $4 } at == "lamp/new" && $1 == "f" { count = NF - 1
+        for (i = 1; i <= count; i++) { split($(i + 1), a, "/"); split($(i % count + 2), b, "/"); p = n + 1 + a[1]; q = n + 1 + b[1]; sum += (x[p] * y[q] - x[q] * y[p]) / 2 } }
+        END { exit !(n == 4 && count == 4 && z == 60 && (sum + 256) ^ 2 < 1) }' $F/model.obj || { grep -A12 'o lamp' $F/model.obj; fail "model.obj has another opening"; }
+    grep -aq '"lights":\[{"name":"new","type":"spot","color":\[1.0,0.5,0.25\],"intensity":' $F/model.glb && grep -aq '"extras":{"ies":"panel.ies","lumens":6283.18[0-9]*}' $F/model.glb ||
+        { grep -ao '"lights".\{300\}' $F/model.glb; fail "model.glb has not the light"; }
+    for rest in "IFCLIGHTFIXTURE\\(.[^,]*,[$],.new.," "IFCLIGHTSOURCEGONIOMETRIC\\(.new.,#[0-9]*,[$],[$],#[0-9]*,#[0-9]*,[0-9.]*,6283[.]18[0-9]*,[.]NOTDEFINED[.],#[0-9]*\\)" \
+        "IFCLIGHTDISTRIBUTIONDATA\\(0[.],\\(0[.],1[.]5707963[0-9]*\\),\\(0[.]15915494[0-9]*,0[.]15915494[0-9]*\\)\\)"; do
+        grep -qE "$rest" $F/model.ifc || { grep LIGHT $F/model.ifc; fail "model.ifc has no $rest"; }
+    done
+    ! grep -q 'IFCLIGHT' "$E/model.ifc" && ! grep -aq 'KHR_lights' "$E/model.glb" && ! grep -q lamp "$E/model.obj" || fail "an edit without lamps has one"
+    if has gltf-validator; then gltf_is_valid lit; fi
+    if command -v assimp >/dev/null; then assimp info $F/model.glb >found 2>&1 && grep -qE '^Lights: +1$' found || { cat found; fail "assimp finds no light"; }; fi
+    grep -q 'class="lamp"' out/t/remodel/lit/plan.svg || fail "the plan has no lamp"
+}
+
 # boxes FORMAT EDIT|model: "NAME X0 Y0 Z0 X1 Y1 Z1" of each thing in an exported file, z up
 boxes()
 {
@@ -244,5 +269,5 @@ things_of_an_edit_want_the_unedited_model()
     ! grep -q thing made/model.obj || fail "things were exported without --things"
 }
 
-for t in objects_of_an_edit_are_in_every_format things_are_in_every_format_as_the_edit_has_them \
+for t in objects_of_an_edit_are_in_every_format lamps_of_an_edit_are_in_every_format things_are_in_every_format_as_the_edit_has_them \
     things_of_an_edit_want_the_unedited_model the_building_has_its_quantities the_gltf_validator_finds_no_error web_ifc_reads_the_building web_ifc_reads_a_gable assimp_reads_obj_and_gltf; do run "$t"; done
