@@ -6,6 +6,8 @@
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
 
+static const double LAMP_RADIUS = 7; /* px */
+
 static const double picture_side = 1000; /* px */
 
 double plan_sheet_x(const struct plan_sheet *s, double x) { return s->scale * (x - s->low[0]); }
@@ -93,6 +95,21 @@ void plan_sheet_put_text(const struct plan_sheet *s, double x, double y, const c
             fputc(*text, s->to);
         }
     fputs("</text>\n", s->to);
+}
+
+void plan_sheet_lamp_sign(FILE *to, double x, double y)
+{
+    const double r = LAMP_RADIUS, d = r * M_SQRT1_2;
+    fprintf(to,
+            "<path class=\"lamp\" fill=\"#fff4c2\" stroke=\"#2c2f33\" d=\"M%.2f %.2fa%g %g 0 1 0 %g 0a%g %g 0 1 0 "
+            "-%g 0M%.2f %.2fl%.2f %.2fm0 -%.2fl-%.2f %.2f\"/>\n",
+            x - r, y, r, r, 2 * r, r, r, 2 * r, x - d, y - d, 2 * d, 2 * d, 2 * d, 2 * d, 2 * d);
+}
+
+void plan_sheet_put_lamp(const struct plan_sheet *s, double x, double y, const char *name)
+{
+    plan_sheet_lamp_sign(s->to, plan_sheet_x(s, x), plan_sheet_y(s, y));
+    plan_sheet_put_text(s, x, y - 3 * LAMP_RADIUS / s->scale, "place", name);
 }
 
 static void put_rooms(const struct plan_sheet *s, const struct model_plan *plan)

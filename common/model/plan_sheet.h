@@ -37,6 +37,11 @@ void plan_sheet_put_polygon(const struct plan_sheet *s, double (*p)[2], int coun
 /* Escapes the text. x, y: the middle of its base line. */
 void plan_sheet_put_text(const struct plan_sheet *s, double x, double y, const char *class, const char *text);
 
+/* A circle with a cross at x, y px, the sign of a lamp on electrical plans. In the C locale. */
+void plan_sheet_lamp_sign(FILE *to, double x, double y);
+/* The same in the model's frame, with a name below it, whose class is `place`. */
+void plan_sheet_put_lamp(const struct plan_sheet *s, double x, double y, const char *name);
+
 /* Rooms with their names, walls, openings and boxes. Walls that are parallel to no axis are shown by their rooms. */
 void plan_sheet_put_plan(const struct plan_sheet *s, const struct model_plan *plan);
 

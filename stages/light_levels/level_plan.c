@@ -127,6 +127,17 @@ static void put_places(const struct drawing *d)
     }
 }
 
+/* Planned lamps that shine, each a circle with a cross, as on electrical plans. */
+static void put_lamps(const struct drawing *d)
+{
+    const struct level_picture *p = d->picture;
+    for (int i = 0; p->lamps && i < p->lamps->count; i++) {
+        const struct planned_lamp *l = &p->lamps->list[i];
+        if (!(p->shines[i] > 0)) continue;
+        plan_sheet_put_lamp(&d->sheet, l->at.x, l->at.y, l->name);
+    }
+}
+
 static void put_title(const struct drawing *d)
 {
     const struct sensors *s = d->sensors;
@@ -165,6 +176,7 @@ enum status level_plan_write(const struct level_picture *picture, const struct s
     plan_sheet_put_plan(&d.sheet, plan);
     for (int k = 0; !err->status && k < sensors->area_count; k++)
         if (sensors->areas[k].kind == SENSOR_WORK_PLANE) put_area(&d, &sensors->areas[k], err);
+    put_lamps(&d);
     put_places(&d);
     put_title(&d);
     put_key(&d);

@@ -175,8 +175,14 @@ static enum status add_faces(struct levels_job *j, const struct reading *r, stru
 static enum status draw(const struct levels_job *j, const struct reading *r, const double *values, struct err *err)
 {
     char path[FILE_PATH];
-    const struct level_picture picture = {r->name, r->unit, values, !strncmp(r->name, "year-", 5),
-                                          (const double(*)[2])r->ends};
+    const struct light_groups *groups = &j->light.groups;
+    const struct level_picture picture = {.title = r->name,
+                                          .unit = r->unit,
+                                          .values = values,
+                                          .annual = !strncmp(r->name, "year-", 5),
+                                          .ends = (const double(*)[2])r->ends,
+                                          .lamps = r->weights ? groups->planned_lamps : NULL,
+                                          .shines = r->weights ? r->weights->absolute + groups->planned : NULL};
     if (!j->sensors.count ||
         product_path_in(path, j->out, PRODUCT_LIGHT_PLAN, &(struct product_key){.name = r->name}, err))
         return err->status;
@@ -317,7 +323,7 @@ static enum status add_year(struct levels_job *j, double *values, struct err *er
 
 enum status level_sheet_make(struct levels_job *j, struct err *err)
 {
-    const struct level_metre *metre = &j->scene.metre;
+    const struct model_metre *metre = &j->scene.metre;
     char path[FILE_PATH];
     double *values = malloc(((size_t)j->sensors.count + 1) * sizeof *values);
     if (!values) return err_nomem(err, "points", (size_t)j->sensors.count * sizeof *values);
@@ -328,8 +334,8 @@ enum status level_sheet_make(struct levels_job *j, struct err *err)
         snprintf(j->sheet.note, sizeof j->sheet.note,
                  "no scale is known: a metre is a guess, %.3g units of the model (%.3g to %.3g), by rooms %g m high "
                  "(%g to %g); it sets the work plane and the distances of points",
-                 metre->units, metre->low, metre->high, j->params.room_height, level_metre_heights[0],
-                 level_metre_heights[1]);
+                 metre->units, metre->low, metre->high, j->params.room_height, model_metre_heights[0],
+                 model_metre_heights[1]);
     if (err->status || product_path_in(path, j->out, PRODUCT_LIGHT_SHEET, &(struct product_key){0}, err))
         return err->status;
     return sheet_write(&j->sheet, j->files.before ? &j->before : NULL, path, &j->prov, err);

@@ -1,8 +1,8 @@
 /* plan_picture.c - the plan as SVG.
  *
  * Drawn from the plan, not from the solids. Order is from bottom to top: the floor under removed walls, rooms,
- * boxes, walls, openings with their leaves or panes, slots, names of walls, photographs. x and y of the model become
- * right and up; SVG's y points down, so sheet_y() turns it over.
+ * boxes, walls, openings with their leaves or panes, slots, names of walls, lamps that an edit hangs, photographs. x
+ * and y of the model become right and up; SVG's y points down, so sheet_y() turns it over.
  *
  * A room's label is at the centroid of its outline, with its area and its height there: with the cross products c_i
  * = a_i x a_(i+1) of consecutive corners, area = sum c_i / 2 and centroid = sum (a_i + a_(i+1)) c_i / (6 area).
@@ -17,6 +17,7 @@
 #include "common/base/outfile.h"
 #include "common/base/scan.h"
 #include "common/math/numbers.h"
+#include "common/model/plan_sheet.h"
 #include "stages/build_model/layout/layout.h"
 
 struct sheet {
@@ -75,6 +76,12 @@ static void put_slot(const struct sheet *s, const struct plan_slot *o)
         {o->low[0], o->low[1]}, {o->high[0], o->low[1]}, {o->high[0], o->high[1]}, {o->low[0], o->high[1]}};
     put_polygon(s, c, 4, "slot");
     put_name(s, 0.5 * (o->low[0] + o->high[0]), 0.5 * (o->low[1] + o->high[1]), "small", 0, o->name);
+}
+
+static void put_lamp(const struct sheet *s, const struct plan_lamp *l)
+{
+    plan_sheet_lamp_sign(s->to, sheet_x(s, l->placed.at[0]), sheet_y(s, l->placed.at[1]));
+    put_name(s, l->placed.at[0], l->placed.at[1] - 17 / s->scale, "small", 0, l->name);
 }
 
 static void put_cameras(const struct sheet *s, const struct placer *placer, double size)
@@ -210,6 +217,10 @@ static void put_plan(const struct sheet *s, const struct plan *plan, const struc
         plan_wall_span(plan, i, span);
         plan_wall_point(w, span[0] + 0.12 * (span[1] - span[0]), -0.08 * unit, at);
         put_name(s, at[0], at[1], "name", readable(w->d), w->name);
+    }
+    for (int i = 0; i < plan->lamp_count; i++) {
+        const double *c = plan->lamps[i].scale;
+        if (plan->lamps[i].file && c[0] + c[1] + c[2] > 0) put_lamp(s, &plan->lamps[i]);
     }
     put_cameras(s, placer, PICTURE_FRUSTUM * unit);
 }
