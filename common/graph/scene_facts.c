@@ -7,6 +7,7 @@
 
 #include "common/base/file_path.h"
 #include "common/base/scan.h"
+#include "common/base/textfile.h"
 #include "common/product/product.h"
 
 const char *scene_setting(const char *variable)
@@ -111,6 +112,30 @@ static enum status read_eyes(struct scene_facts *f, struct err *err)
     return err->status;
 }
 
+/* As --holdout-views takes names. */
+static bool is_photo_name(const char *word)
+{
+    return !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@-")];
+}
+
+/* Lines `photo NAME in STATE` of states.txt; what else they may say is for light_levels to check. */
+static enum status read_other_light(struct scene_facts *f, struct err *err)
+{
+    struct textfile t = {0};
+    char path[FILE_PATH], *word;
+    if (file_path(path, f->folder, "states.txt", "", err) || !path_is_file(path)) return err->status;
+    if (textfile_open(&t, path, err)) return err->status;
+    while (!err->status && textfile_next(&t)) {
+        struct err unread = ERR_INIT;
+        if (textfile_word(&t, "a statement", &word, &unread) || strcmp(word, "photo") != 0 ||
+            textfile_word(&t, "a photo's name", &word, &unread) || !is_photo_name(word))
+            continue;
+        if (!name_list_has(&f->other_light, word)) name_list_add(&f->other_light, word, strlen(word), err);
+    }
+    textfile_release(&t);
+    return err->status;
+}
+
 enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, const char *shared, const char *own,
                              const char *bin, struct err *err)
 {
@@ -121,7 +146,9 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
     f->own = own;
     f->bin = bin;
     f->choose = scene_setting("CHOOSE");
-    f->holds_out = *scene_setting("HOLDOUT") || *scene_setting("HOLDOUT_VIEWS");
+    f->compares_held = *scene_setting("HOLDOUT") || *scene_setting("HOLDOUT_VIEWS");
+    if (read_other_light(f, err)) return err->status;
+    f->holds_out = f->compares_held || f->other_light.count > 0;
     f->frames_per_job =
         scan_int(scene_setting("FRAMES_PER_JOB"), &frames) && frames > 0 && frames < 1000000 ? (int)frames : 30;
     /* BUILD/bin has BUILD/code beside it */
@@ -149,8 +176,9 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
 
 void scene_facts_release(struct scene_facts *f)
 {
-    struct name_list *lists[] = {&f->products, &f->films,       &f->photos, &f->references,  &f->views,  &f->held,
-                                 &f->edits,    &f->drawn_edits, &f->eyes,   &f->eye_folders, &f->formats};
+    struct name_list *lists[] = {&f->products,    &f->films, &f->photos,      &f->references,
+                                 &f->views,       &f->held,  &f->other_light, &f->edits,
+                                 &f->drawn_edits, &f->eyes,  &f->eye_folders, &f->formats};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) name_list_release(lists[i]);
     release_groups(&f->viewpoints);
     release_groups(&f->held_viewpoints);

@@ -42,7 +42,9 @@ struct scene_facts {
     bool is_pair;                /* two photos, whose film is a morph */
     struct name_list references; /* ids of the lighting reference images */
 
-    bool holds_out;
+    struct name_list other_light; /* photos of lines `photo` of states.txt: they are held out */
+    bool compares_held;           /* HOLDOUT or HOLDOUT_VIEWS: held-out photos are compared with pictures of them */
+    bool holds_out;               /* some photos are held out, for either reason */
     struct name_list views, held; /* rectified views, and those held out */
     struct view_groups viewpoints, held_viewpoints;
 

@@ -55,5 +55,5 @@ RULES(evaluate)
     else
         rule_option(g, "--rendered", graph_own(g, "rendered"));
     rule_option(g, "--out", PATH(g, METRICS));
-    if (f->holds_out || *scene_setting("TRUTH")) graph_list(g, GRAPH_SHOWN, PATH(g, METRICS));
+    if (f->compares_held || *scene_setting("TRUTH")) graph_list(g, GRAPH_SHOWN, PATH(g, METRICS));
 }

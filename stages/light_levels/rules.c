@@ -80,6 +80,15 @@ static void say_photos(struct graph *g, const struct scene_facts *f, const char 
     name_list_release(&named);
 }
 
+/* Photos in other light, which are held out. */
+static void say_other_light(struct graph *g, const struct scene_facts *f)
+{
+    if (!f->other_light.count) return;
+    rule_needs_held_cameras(g);
+    rule_needs_set(g, "held_views");
+    rule_option(g, "--held-views", FOLDER(g, CAMERAS, .views = HELD_VIEWS));
+}
+
 static void edit_rule(struct graph *g, const struct scene_facts *f, const char *edit)
 {
     const char *edited = graph_text(g, "remodel/%s", edit), *lux = graph_text(g, "lux/%s", edit);
@@ -109,6 +118,7 @@ RULES(light_levels)
     rule_makes(g, PATH(g, LIGHT_SHEET));
     say_room(g, f, "model");
     say_scripts(g, f);
+    say_other_light(g, f);
     say_photos(g, f, NULL);
     rule_option(g, "--out", FOLDER(g, LIGHT_SHEET));
     for (int i = 0; *scene_setting("EDIT") && i < f->drawn_edits.count; i++) edit_rule(g, f, f->drawn_edits.names[i]);

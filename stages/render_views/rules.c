@@ -64,6 +64,6 @@ RULES(render_views)
                             scene_chunk_size(f, &frames, i));
         name_list_release(&frames);
     }
-    for (int i = 0; i < f->held.count; i += f->frames_per_job)
+    for (int i = 0; f->compares_held && i < f->held.count; i += f->frames_per_job)
         heldout_rule(g, &f->held, i, scene_chunk_size(f, &f->held, i));
 }

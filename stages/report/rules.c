@@ -15,7 +15,7 @@ static const char *steps_before(struct graph *g, const struct scene_facts *f)
     }
     if (f->has_model && scene_asks_for(f, "remodel")) steps = graph_text(g, "%s walk", steps);
     if (f->films.count || *f->choose) steps = graph_text(g, "%s video", steps);
-    if (f->holds_out || *scene_setting("TRUTH")) steps = graph_text(g, "%s evaluate", steps);
+    if (f->compares_held || *scene_setting("TRUTH")) steps = graph_text(g, "%s evaluate", steps);
     return graph_text(g, "%s pan_scan", steps);
 }
 

@@ -15,13 +15,21 @@ static void check_holdout(struct graph *g)
         graph_refuse(g, "HOLDOUT_VIEWS=%s: names of photos and views are letters, digits, _, - and @.", views);
 }
 
+/* Photos to hold out by name: those that people want to compare, and those in other light. */
+static const char *held_names(struct graph *g, const struct scene_facts *f)
+{
+    const char *names = scene_setting("HOLDOUT_VIEWS");
+    for (int i = 0; i < f->other_light.count; i++)
+        names = *names ? graph_text(g, "%s %s", names, f->other_light.names[i]) : f->other_light.names[i];
+    return names;
+}
+
 RULES(sfm_import)
 {
     check_holdout(g);
     const char *stamp = graph_stamp(
         g, "holdout.txt",
-        f->holds_out ? graph_text(g, "every %s\nviews %s", scene_setting("HOLDOUT"), scene_setting("HOLDOUT_VIEWS"))
-                     : NULL);
+        f->holds_out ? graph_text(g, "every %s\nviews %s", scene_setting("HOLDOUT"), held_names(g, f)) : NULL);
     graph_step(g, "sfm", STEP_ONE, "matches");
     graph_goal(g, "sfm", PATH(g, VIEWS_MK));
     graph_rule(g, "all");
@@ -48,6 +56,5 @@ RULES(sfm_import)
     rule_option(g, "--out", FOLDER(g, CAMERAS));
     if (*scene_setting("SPLIT")) rule_option(g, "--split", scene_setting("SPLIT"));
     if (*scene_setting("HOLDOUT")) rule_option(g, "--holdout", scene_setting("HOLDOUT"));
-    if (*scene_setting("HOLDOUT_VIEWS"))
-        rule_option(g, "--holdout-views", graph_text(g, "'%s'", scene_setting("HOLDOUT_VIEWS")));
+    if (*held_names(g, f)) rule_option(g, "--holdout-views", graph_text(g, "'%s'", held_names(g, f)));
 }

@@ -235,6 +235,24 @@ what_is_held_out_is_rectified_and_not_matched()
     needs out/t/metrics.tsv out/t/holdout/frames/c.exr || fail "metrics do not need the frame of the held-out view"
 }
 
+photos_in_other_light_are_placed_and_held_out()
+{
+    scene a b c
+    printf 'remodel-script 1\n' >scenes/t/model.txt
+    printf 'remodel-states 1\nstate off lamps off\nphoto c in off\nphoto "x;y" in off\n' >scenes/t/states.txt
+    mkdir -p out/t/holdout/views
+    echo 'VIEWS := a b' >out/t/views/views.mk
+    echo 'VIEWS := c' >out/t/holdout/views/views.mk
+    graph write
+    grep -qF -- "--holdout-views 'c'" out/t/graph/sfm_import.mk || { cat out/t/graph/sfm_import.mk; fail "the photo is not held out"; }
+    grep -q -- "--held-views out/t/holdout/views" out/t/graph/light_levels.mk || { cat out/t/graph/light_levels.mk; fail "light levels do not look at it"; }
+    ! grep -q 'heldout-c' out/t/graph/render_views.mk && ! needs out/t/metrics.tsv out/t/holdout/frames/c.exr || fail "a frame is drawn to compare it with"
+    ! grep -q 'depth/c.exr' out/t/graph/segment_depth.mk || fail "it is matched"
+    rm scenes/t/states.txt
+    graph write
+    ! grep -q -- '--holdout-views' out/t/graph/sfm_import.mk || fail "it is held out without states.txt"
+}
+
 an_edit_needs_the_scripts_and_meshes_that_it_stands_on()
 {
     scene a b
@@ -379,7 +397,7 @@ for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_
     a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_frame_that_all_depth_reads \
     a_changed_photo_redoes_its_features_and_the_cameras a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
     a_changed_program_redoes_its_products a_given_model_with_points_needs_no_matches depth_that_a_model_names_is_given_unless_depth_is a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
-    what_is_held_out_is_rectified_and_not_matched an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
+    what_is_held_out_is_rectified_and_not_matched photos_in_other_light_are_placed_and_held_out an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
     a_rectangle_on_a_wall_of_any_name_asks_for_points given_cameras_see_the_unedited_model_too pictures_need_the_exposure_and_not_all_views \
     an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \
     a_graph_that_is_the_same_is_not_rewritten wrong_settings_are_refused; do run "$t"; done
