@@ -3,7 +3,8 @@
  * A measurement in a state is a sum over groups: their light at the place, as photographed, times the scale to lx,
  * times a factor that the fit finds (group_fit.h). Its error is twice [light_levels] error, since a place is less
  * certain than an area, and the meter's. Planned lamps and computed skies are in lx, and are taken as they are. Without
- * a scale, the median of what the measurements say with all factors 1 is the scale. */
+ * a scale, the median of what the measurements say with all factors 1 is the scale. Photos in other light
+ * (other_light.h) say how groups compare; a patch of them is as uncertain as a place. */
 #include "stages/light_levels/level_factors.h"
 
 #include <math.h>
@@ -18,7 +19,8 @@
 #include "common/product/product.h"
 
 static const double NORMAL_95 = 1.959964, SPREAD = 0.5, SHARED = 0.05, OFF = 3; /* SHARED: error of all meters alike */
-static const double PLACE = 2; /* a place is that much less certain than the mean of an area */
+static const double UNLIKE = 0.3; /* misfit of a photo that was taken in another state */
+static const double PLACE = 2;    /* a place is that much less certain than the mean of an area */
 
 void level_factors_release(struct level_factors *f)
 {
@@ -136,6 +138,19 @@ static enum status find_scale(struct lux_interval *scale, const struct group_mea
              : err_set(err, ST_DATA, "no measurement has more light than computed skies and planned lamps give.");
 }
 
+static void report_photo(const struct factor_sources *from, int which)
+{
+    const struct group_photo *photo = &from->photos->photos[which];
+    const struct state_photo *is = &from->states->photos[which];
+    const char *state = from->states->items[is->state].name;
+    log_note("photo %s in %s: %d patches, exposed %.3g times as the others, off by %.2g %% (median)", is->name, state,
+             photo->count, photo->exposure, 100 * photo->misfit);
+    if (photo->misfit > UNLIKE)
+        log_warn("%s:%d: the photo %s does not show the light of %s: its patches are off by %.2g %% in the median; "
+                 "check the state.",
+                 from->states->path, is->line, is->name, state, 100 * photo->misfit);
+}
+
 static void report(const struct level_factors *f, const struct factor_sources *from, const struct group_measurement *m)
 {
     for (int i = 0; i < f->count; i++) {
@@ -145,6 +160,7 @@ static void report(const struct level_factors *f, const struct factor_sources *f
             log_note("%s %s: %.3g (%.3g to %.3g) times as photographed, by %d measurement%s", word, name, is->factor,
                      is->low, is->high, is->measurements, is->measurements == 1 ? "" : "s");
     }
+    for (int k = 0; k < from->photos->count; k++) report_photo(from, k);
     for (int k = 0; k < from->states->measured_count; k++) {
         const struct state_measured *is = &from->states->measured[k];
         if (fabs(m[k].deviation) > OFF)
@@ -159,8 +175,8 @@ enum status level_factors_make(struct level_factors *f, const struct factor_sour
     const struct light_groups *g = &from->light->groups;
     const int count = from->states->measured_count, groups = count_of(g);
     *f = (struct level_factors){.count = 0};
-    if (!count) return ST_OK;
-    struct group_measurement *m = calloc((size_t)count, sizeof *m);
+    if (!count && !from->photos->count) return ST_OK;
+    struct group_measurement *m = calloc((size_t)count + 1, sizeof *m);
     double *light = calloc((size_t)count * (size_t)groups + 1, sizeof *light);
     if (!m || !light) err_nomem(err, "measurements", (size_t)count * (size_t)groups * sizeof *light);
     for (int k = 0; !err->status && k < count; k++) {
@@ -168,9 +184,11 @@ enum status level_factors_make(struct level_factors *f, const struct factor_sour
         read_one(&m[k], from, k, err);
     }
     f->scale = from->scale;
-    if (!err->status && !(f->scale.scale > 0)) find_scale(&f->scale, m, count, groups, err);
+    if (!err->status && count && !(f->scale.scale > 0)) find_scale(&f->scale, m, count, groups, err);
     for (int i = 0; !err->status && i < count * groups; i++) light[i] *= f->scale.scale;
-    if (!err->status && !allocate(f, g, err) && !group_fit(f->list, groups, m, count, SPREAD, err)) {
+    if (!err->status && !allocate(f, g, err) &&
+        !group_fit_photos(f->list, groups, m, count, from->photos->photos, from->photos->count,
+                          PLACE * from->params->error, SPREAD, err)) {
         spread_out(f, g);
         report(f, from, m);
     }
@@ -238,9 +256,10 @@ enum status level_factors_read(struct level_factors *f, const struct light_group
         !textfile_expect_line(&t, "scale", err) && !textfile_number(&t, "a scale", 0, INFINITY, &f->scale.scale, err) &&
         !textfile_number(&t, "an end of an interval", 0, INFINITY, &f->scale.low, err))
         textfile_number(&t, "an end of an interval", 0, INFINITY, &f->scale.high, err);
-    while (!err->status && textfile_next(&t)) read_line(f, groups, &t, err);
+    bool any = false;
+    while (!err->status && textfile_next(&t)) any = !read_line(f, groups, &t, err);
     textfile_release(&t);
-    if (err->status || !(f->scale.scale > 0))
+    if (err->status || !any)
         level_factors_release(f);
     else
         spread_out(f, groups);

@@ -1,11 +1,12 @@
 /* level_factors.h - how bright lamps and windows of the photographs are, by what somebody measured in states of
- * switches.
+ * switches, and by photos in such states.
  *
  * factors.txt has the lines
  *
  *   remodel-light-factors 1
- *   scale LX LOW HIGH                          of the photographs' unit; 0 0 0: nothing was measured
- *   lamp|window NAME FACTOR LOW HIGH COUNT     of what the photographs show; COUNT: measurements that it matters in
+ *   scale LX LOW HIGH                          of the photographs' unit; 0 0 0: it is not known
+ *   lamp|window NAME FACTOR LOW HIGH COUNT     of what the photographs show; COUNT: measurements and
+ *                                              photos that it matters in
  *   rest FACTOR LOW HIGH COUNT                 of what no lamp and no window explains */
 #ifndef REMODEL_LEVELS_LEVEL_FACTORS_H
 #define REMODEL_LEVELS_LEVEL_FACTORS_H
@@ -13,6 +14,7 @@
 #include "common/daylight/lux_scale.h"
 #include "stages/light_levels/group_fit.h"
 #include "stages/light_levels/level_sums.h"
+#include "stages/light_levels/other_light.h"
 #include "stages/light_levels/sensors.h"
 
 /* {0} is the empty state: nothing is known, and factors are 1. Owned. */
@@ -30,11 +32,12 @@ struct factor_sources {
     const struct sensors *sensors;
     const struct state_list *states;
     const struct levels_params *params;
-    struct lux_interval scale; /* 0: unknown, and then the measurements give it */
+    const struct other_light *photos; /* in other light; the fit says how well they go with it */
+    struct lux_interval scale;        /* 0: unknown, and then the measurements give it */
 };
 
-/* Without lines `measured` the factors stay empty. ST_DATA: a place that places.txt does not have, or a state without
- * light of the photographs. The caller releases f in each case. */
+/* Without lines `measured` and `photo` the factors stay empty. ST_DATA: a place that places.txt does not have, or a
+ * state without light of the photographs. The caller releases f in each case. */
 enum status level_factors_make(struct level_factors *f, const struct factor_sources *from, struct err *err);
 void level_factors_release(struct level_factors *f);
 

@@ -28,6 +28,7 @@ void levels_release(struct levels_job *j)
     sheet_release(&j->before);
     level_points_release(&j->levels);
     level_factors_release(&j->factors);
+    other_light_release(&j->other);
     level_views_release(&j->views);
     cli_list_release(&j->files.shown.names);
     lux_scale_release(&j->scale);
@@ -166,7 +167,7 @@ static enum status write_others(struct levels_job *j, struct err *err)
     return write_scripts(j, err);
 }
 
-/* What was measured in states of switches; of an edit, what it says of the unedited room. */
+/* What was measured or photographed in states of switches; of an edit, what it says of the unedited room. */
 static enum status find_factors(struct levels_job *j, struct err *err)
 {
     const struct factor_sources from = {.light = &j->light,
@@ -174,10 +175,12 @@ static enum status find_factors(struct levels_job *j, struct err *err)
                                         .sensors = &j->sensors,
                                         .states = &j->states,
                                         .params = &j->params,
+                                        .photos = &j->other,
                                         .scale = j->scale.is};
     if (j->files.factors)
         level_factors_read(&j->factors, &j->light.groups, j->files.factors, &j->prov, err);
-    else if (!j->scene.edited)
+    else if (!j->scene.edited && !other_light_make(&j->other, &j->files.other, &j->light, &j->states, &j->scene.axes,
+                                                   &j->params, &j->prov, err))
         level_factors_make(&j->factors, &from, err);
     if (err->status) return err->status;
     if (j->factors.count) {

@@ -17,6 +17,7 @@ struct levels_files {
     const char *plan, *places, *states, *weather, *points, *before, *scale, *day, *factors;
     bool table; /* of `points`: all states */
     struct level_view_files shown;
+    struct other_light_files other;
 };
 
 /* Everything but the paths is owned. */
@@ -34,6 +35,7 @@ struct levels_job {
     struct sensors sensors;
     struct level_points levels; /* of the sensors */
     struct level_factors factors;
+    struct other_light other; /* photos in states of switches */
     struct level_views views;
     struct light_sheet sheet, before;
     struct lux_scale scale;

@@ -87,6 +87,8 @@ int main(int argc, char **argv)
                 "the ends of its interval of 95 % as factors"),
         CLI_FLAG("table", &job.files.table, "with --points: print their illuminance in each state instead"),
         CLI_STR("views", &job.files.shown.views, CLI_OPTIONAL, "folder of cameras and views, for pictures"),
+        CLI_STR("held-views", &job.files.other.views, CLI_OPTIONAL,
+                "folder of cameras and views of photos that states.txt says were taken in other light"),
         CLI_LIST("photo", &job.files.shown.names, CLI_OPTIONAL,
                  "with --views: photo to draw illuminance over; repeat for several"),
         CLI_STR("pictures", &job.files.shown.pictures, CLI_OPTIONAL,

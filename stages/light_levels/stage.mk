@@ -1,6 +1,6 @@
 # light_levels: how bright rooms and places are, by groups of light.
 FOLLOWS.light_levels := build_model find_things bake_vita bake_outdoors fit_lights update_vita calibrate_light
-READS.light_levels := both models, plan.txt, texture.txt and objects.txt, axes.txt, the VITA, the things, cameras, lenses and views, pictures of edits, outdoors.exr and sky.txt, lights/lights.txt, fit.txt and the reference images that they name; lux/scale.txt; scenes/NAME/places.txt and states.txt with its IES files, and WEATHER, if there are any
+READS.light_levels := both models, plan.txt, texture.txt and objects.txt, axes.txt, the VITA, the things, cameras, lenses and views, those of photos in other light, pictures of edits, outdoors.exr and sky.txt, lights/lights.txt, fit.txt and the reference images that they name; lux/scale.txt; scenes/NAME/places.txt and states.txt with its IES files, and WEATHER, if there are any
 VARIABLES.light_levels := WEATHER
 SETTINGS.light_levels := LUX_PHOTOS DAY
 HELP.lux := + light levels of rooms and named places, of the room as it is and with EDIT=E after an edit: O/lux/sheet.tsv

@@ -10,8 +10,8 @@
 #include "common/base/textfile.h"
 
 static const double BRIGHTEST = 1e6, LEAST_LUX = 0.01, MOST_FACTOR = 1000; /* lx */
-static const double USUAL_WITHIN = 0.05;                                   /* of a lux-meter */
-enum { YEAR = 2025 };                                                      /* of times, which have none: no leap year */
+static const double USUAL_WITHIN = 0.05, LEAST_EXPOSED = 1e-6; /* of a lux-meter; of a photo beside others */
+enum { YEAR = 2025 };                                          /* of times, which have none: no leap year */
 
 static void release_state(struct light_state *s)
 {
@@ -26,6 +26,8 @@ void state_list_release(struct state_list *l)
 {
     for (int i = 0; i < l->count; i++) release_state(&l->items[i]);
     for (int i = 0; i < l->measured_count; i++) free(l->measured[i].place);
+    for (int i = 0; i < l->photo_count; i++) free(l->photos[i].name);
+    free(l->photos);
     planned_lamps_release(&l->planned);
     free(l->measured);
     free(l->items);
@@ -166,6 +168,33 @@ static enum status read_state(struct state_list *l, struct textfile *t, struct e
     return begin_state(l, word, err) ? err->status : read_options(l, t, err);
 }
 
+/* The number of a state that stands above. */
+static enum status read_state_name(int *state, const struct state_list *l, struct textfile *t, struct err *err)
+{
+    char *word;
+    *state = 0;
+    if (textfile_expect(t, "in", err) || textfile_word(t, "a state's name", &word, err)) return err->status;
+    while (*state < l->count && strcmp(l->items[*state].name, word) != 0) ++*state;
+    return *state < l->count ? ST_OK : textfile_error(t, err, word, "a state of every scene or of a line above");
+}
+
+static enum status read_photo(struct state_list *l, struct textfile *t, struct err *err)
+{
+    char *word;
+    if (array_append(&l->photos, (size_t)l->photo_count, sizeof *l->photos, "photos", err)) return err->status;
+    struct state_photo *p = &l->photos[l->photo_count++];
+    *p = (struct state_photo){.line = t->line};
+    if (textfile_word(t, "a photo's name", &word, err)) return err->status;
+    if (!(p->name = strdup(word))) return err_nomem(err, "a name", strlen(word));
+    for (int i = 0; i + 1 < l->photo_count; i++)
+        if (!strcmp(l->photos[i].name, word)) return textfile_error(t, err, word, "a photo that no line above names");
+    if (read_state_name(&p->state, l, t, err) || !textfile_more(t)) return err->status;
+    if (textfile_expect(t, "exposed", err) || textfile_number(t, "how often as bright it is exposed as the others",
+                                                              LEAST_EXPOSED, 1 / LEAST_EXPOSED, &p->exposed, err))
+        return err->status;
+    return textfile_end(t, err);
+}
+
 static enum status read_measured(struct state_list *l, struct textfile *t, struct err *err)
 {
     char *word;
@@ -177,9 +206,7 @@ static enum status read_measured(struct state_list *l, struct textfile *t, struc
         textfile_expect(t, "at", err) || textfile_word(t, "a place of places.txt", &word, err))
         return err->status;
     if (!(m->place = strdup(word))) return err_nomem(err, "a name", strlen(word));
-    if (textfile_expect(t, "in", err) || textfile_word(t, "a state's name", &word, err)) return err->status;
-    while (m->state < l->count && strcmp(l->items[m->state].name, word) != 0) m->state++;
-    if (m->state == l->count) return textfile_error(t, err, word, "a state of every scene or of a line above");
+    if (read_state_name(&m->state, l, t, err)) return err->status;
     if (!textfile_more(t)) return ST_OK;
     if (textfile_expect(t, "within", err) || textfile_number(t, "per cent", 0.1, 100, &m->within, err))
         return err->status;
@@ -197,7 +224,8 @@ static enum status read_line(struct state_list *l, struct textfile *t, struct pr
     }
     if (!strcmp(word, "lamp")) return planned_lamps_read(&l->planned, t, prov, err);
     if (!strcmp(word, "measured")) return read_measured(l, t, err);
-    if (strcmp(word, "state") != 0) return textfile_error(t, err, word, "site, lamp, state or measured");
+    if (!strcmp(word, "photo")) return read_photo(l, t, err);
+    if (strcmp(word, "state") != 0) return textfile_error(t, err, word, "site, lamp, state, measured or photo");
     return read_state(l, t, err);
 }
 

@@ -4,6 +4,7 @@
  *   site LATITUDE LONGITUDE ZONE [north DEGREES]     before states that need the sun
  *   lamp NAME ies FILE.ies at X Y Z ...              a planned lamp (planned_lamps.h), before states that name it
  *   measured LUX at PLACE in STATE [within PERCENT]  a lux-meter at a place of places.txt, in a state above
+ *   photo PHOTO in STATE [exposed FACTOR]            the photo was taken in that state, not as the others
  *   state NAME [lamps on|off] [lamp NAME FACTOR]... [sky SKY] [blind WINDOW PART]...
  *
  * ZONE: hours that clocks are ahead of UTC. DEGREES: the azimuth of north in the model's frame, from x towards y (90
@@ -54,6 +55,14 @@ struct state_measured {
     int line;
 };
 
+/* A photo that was taken in a state of switches. */
+struct state_photo {
+    char *name;     /* owned */
+    int state;      /* its number */
+    double exposed; /* times as the others; 0: unknown */
+    int line;
+};
+
 /* {0} is the empty state; everything is owned. */
 struct state_list {
     char *path; /* NULL: those that every scene has */
@@ -65,6 +74,8 @@ struct state_list {
     struct planned_lamps planned;
     struct state_measured *measured;
     int measured_count;
+    struct state_photo *photos;
+    int photo_count;
 };
 
 /* The states that every scene has, and those of a file; path NULL: no file. The first four are photographed, lamps,

@@ -176,6 +176,24 @@ measurements_in_states_say_how_bright_lamps_are()
     levels 1 'no lamp and no window of the photographs brings light to west' --places two.txt --states bad.txt --out made
 }
 
+# the photos of the textures taken for others: in their own state they go with it, in another one a warning says that they do not
+photographs_in_states_say_how_bright_lamps_are()
+{
+    printf 'remodel-states 1\nstate same sky photographed\nphoto photo_1 in same\nphoto photo_2 in same exposed 1\n' >same.txt
+    levels 0 'photo photo_1 in same: ' --states same.txt --held-views $O/views --out two/same
+    awk '/photo photo_[12] in same: / { n++; for (i = 1; i <= NF; i++) { if ($i == "exposed") e = $(i + 1); if ($i == "by") m = $(i + 1) }
+        if (!(e > 0.95 && e < 1.05 && m < 10)) bad = 1 } END { exit !(n == 2 && !bad) }' err.txt || { cat err.txt; fail "photos do not go with the textures that they made"; }
+    ! grep -q 'does not show' err.txt && awk '$1 == "window" || $1 == "rest" { n++; x = NF == 6 ? $3 : $2; if (!(x > 0.9 && x < 1.1)) bad = 1 } END { exit !n || bad }' two/same/factors.txt ||
+        { cat err.txt two/same/factors.txt; fail "the same light changes factors"; }
+    printf 'remodel-states 1\nstate noon lamps off sky overcast 1000\nphoto photo_1 in noon\n' >bad.txt
+    levels 1 'bad.txt:3: the state noon has a computed sky or a planned lamp' --states bad.txt --held-views $O/views --out made
+    printf 'remodel-states 1\nphoto none-such in lamps\n' >bad.txt
+    levels 1 'bad.txt:2: found the photo none-such' --states bad.txt --held-views $O/views --out made
+    levels 2 'need --held-views' --states bad.txt --out made
+    printf 'remodel-states 1\nphoto photo_1 in evening\n' >bad.txt
+    levels 1 'bad.txt:2: found "evening"' --states bad.txt --out made
+}
+
 the_page_adds_groups_of_light_up()
 {
     [ -s $O/lux/index.html ] || fail "make lux wrote no page"
@@ -262,4 +280,4 @@ errors_name_file_and_line()
     levels 2 '--edited needs --map' --edited $O/model/model.txt --out made
 }
 
-for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key a_command_line_draws_photographs_in_any_state blinds_take_their_part_of_daylight measurements_in_states_say_how_bright_lamps_are the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre a_model_without_rooms_is_warned_of planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
+for t in make_lux_has_a_sheet_of_the_room_and_of_the_edit photographs_show_light_levels_with_a_key a_command_line_draws_photographs_in_any_state blinds_take_their_part_of_daylight measurements_in_states_say_how_bright_lamps_are photographs_in_states_say_how_bright_lamps_are the_page_adds_groups_of_light_up lamps_add_up_and_bytes_do_not_depend_on_threads a_year_of_weather_has_its_figures a_day_is_a_film places_are_marked_in_photographs a_room_without_a_scale_has_a_guessed_metre a_model_without_rooms_is_warned_of planned_lamps_shine_in_the_states_that_name_them errors_name_file_and_line; do run "$t"; done
