@@ -111,6 +111,36 @@ const tryTheEdit = async (page, sheet) => {
     await page.run(set('edit', 0));
 };
 
+// Mean, least and most of each edit, in each state that every scene has, are those of its sheet.
+const tryAllEdits = async (page) => {
+    const STATES = [['photographed', 'photographed', 'on'], ['lamps', 'none', 'on'], ['daylight', 'photographed', 'off'],
+        ['overcast', 'overcast', 'off']];
+    const edits = await page.run('[...document.getElementById("edit").options].map((o) => [o.value, o.textContent])');
+    const folders = fs.readdirSync(folder).filter((f) => fs.existsSync(path.join(folder, f, 'sheet.tsv')));
+    let rows = 0, worst = [0, ''];
+    for (const [value, words] of edits) {
+        const own = folders.find((f) => f.replace(/[-_]/g, ' ') === words);
+        const sheet = sheetOf(path.join(folder, own || '', 'sheet.tsv'));
+        await page.run(set('edit', value));
+        for (const [state, sky, lamps] of STATES) {
+            await page.run(set('sky', sky) + ';' + press(lamps));
+            for (const r of await page.run(ROWS)) {
+                const wanted = sheet[state] && sheet[state][r.key];
+                if (!wanted) continue; // lamps and sky in one unit: the sheet has no such row
+                for (const what of ['mean', 'least', 'most']) {
+                    const off = Math.abs(r[what] - +wanted[what]) / Math.max(Math.abs(+wanted[what]), 1e-2);
+                    if (off > worst[0]) worst = [off, `${what} of ${r.key} in ${state}, ${words}: ${r[what]}, wanted ${wanted[what]}`];
+                }
+                rows++;
+            }
+        }
+    }
+    await page.run(set('edit', 0) + ';' + set('sky', 'photographed') + ';' + press('on'));
+    check('all_edits_have_the_values_of_their_sheets', edits.length === folders.length + 1 && rows >= 4 * edits.length &&
+        worst[0] <= 0.005, `${rows} rows of ${edits.length} edits, ${folders.length} sheets; ${worst[1]}`);
+    console.log(`# ${edits.length - 1} edits, ${rows} rows, off by at most ${(100 * worst[0]).toFixed(2)} %: ${worst[1]}`);
+};
+
 const tryThePictures = async (page) => {
     const states = await page.run('[...document.getElementById("state").options].map((o) => o.value)');
     await page.run(set('state', states[1]));
@@ -178,6 +208,7 @@ const main = async () => {
         await tryTheSums(page, sheet);
         await tryTheHours(page);
         await tryTheEdit(page, edited);
+        await tryAllEdits(page);
         await tryThePictures(page);
         await tryThePhotographs(page);
         check('the_console_is_empty', !page.errors.length, page.errors.join(' | '));
@@ -185,7 +216,9 @@ const main = async () => {
         check('the_page_fits_a_phone', width <= 390, `it is ${width} px wide`);
         await tryWithoutScripts(browser);
         const links = await page.run('[...document.querySelectorAll(".plain a")].map((a) => a.getAttribute("href"))');
-        const size = [...links.map(decodeURIComponent), 'index.html', 'relit.js', path.join(edit, 'relit.js')]
+        const relit = ['', ...fs.readdirSync(folder)].map((f) => path.join(f, 'relit.js'))
+            .filter((f) => fs.existsSync(path.join(folder, f)));
+        const size = [...new Set([...links.map(decodeURIComponent), 'index.html', ...relit])]
             .reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
         checkSize(check, size);
     } finally {
