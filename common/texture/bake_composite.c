@@ -2,15 +2,16 @@
  * Colburn 2014, 4.5.2], and fills what no view shows.
  *
  * The unknowns are the texels in display units (bake.h), for which a gain of light is nearly a shift. Original
- * texels are fixed. A warped texel is drawn weakly to its colour in the best view. Each pair of neighbours takes the
- * difference that the best view of either has between them, if that view shows both; a difference above
- * max_gradient, an edge that may not be where the neighbour's source has it, counts little. Where no view shows
- * both, the difference is to be 0. Texels that no view shows are found afterwards, with the others fixed, so that a
- * fill never moves what is seen. They take the differences of texture elsewhere on the face, or of an atlas that has
- * it already (fill.h), or 0 where there is none. They are drawn weakly to that atlas, else to the nearest seen texel
- * that is not beside what hides the face: a face's mean would mix its materials. Where the atlas is brighter than what
- * came of it they are drawn to it more, so that a viewpoint whose rim lies in a thing's shadow has no darker hole than
- * others. */
+ * texels are fixed. A warped texel is drawn weakly to its colour in the best view; ten times as much in an atlas
+ * without a viewpoint, which no original texel holds: furniture that leaves a rim on a wall would draw all of a dark
+ * corner away from its colours, and gathers of light take these for its light. Each pair of neighbours takes the
+ * difference that the best view of either has between them, if that view shows both; a difference above max_gradient,
+ * an edge that may not be where the neighbour's source has it, counts little. Where no view shows both, the difference
+ * is to be 0. Texels that no view shows are found afterwards, with the others fixed, so that a fill never moves what
+ * is seen. They take the differences of texture elsewhere on the face, or of an atlas that has it already (fill.h), or
+ * 0 where there is none. They are drawn weakly to that atlas, else to the nearest seen texel that is not beside what
+ * hides the face: a face's mean would mix its materials. Where the atlas is brighter than what came of it they are
+ * drawn to it more, so that a viewpoint whose rim lies in a thing's shadow has no darker hole than  others. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,9 +24,10 @@
 #include "common/texture/hole_bounds.h"
 #include "common/texture/hole_pieces.h"
 
-static const float WEAK = 1e-5f;        /* weight of data, and of outlying differences */
-static const float SLACK = 1e-7f;       /* weight of pairs of a hole until what is seen is solved: they bend nothing */
-static const float GUIDED = 5e-3f;      /* weight of the filled atlas: a hole's rim tells less beyond 14 texels */
+static const float WEAK = 1e-5f;   /* weight of data, and of outlying differences */
+static const float HELD = 1e-4f;   /* weight of data without a viewpoint: its colours are light, within 100 texels */
+static const float SLACK = 1e-7f;  /* weight of pairs of a hole until what is seen is solved: they bend nothing */
+static const float GUIDED = 5e-3f; /* weight of the filled atlas: a hole's rim tells less beyond 14 texels */
 static const double DEFAULT_GREY = 0.5; /* of white */
 enum { REACH = 12, FURNITURE = 24 };    /* texels: of the clean ones that an unseen one continues; behind furniture */
 enum { MIN_SEEN = 8 };                  /* of these */
@@ -283,7 +285,7 @@ static void set_seen(struct composite *c)
         if (c->role[i] != GRADIENT_FREE || c->unseen[i]) continue;
         display_of(c->value + 3 * i, b, &b->lists[b->list[texel]][0]);
         memcpy(c->data + 3 * i, c->value + 3 * i, 3 * sizeof *c->value);
-        c->data_weight[i] = WEAK;
+        c->data_weight[i] = b->own_group < 0 ? HELD : WEAK;
     }
 }
 
