@@ -70,8 +70,10 @@ static double start_cost(struct problem *p, int colour, struct weighted *scratch
         }
     }
     for (int l = 0; l < f->lamp_count; l++) {
-        const double off = f->lamps[l].fit ? fit_seen_residual(&f->lamps[l], colour, f->lamps[l].radiance[colour]) : 0;
-        sum += off * off;
+        const double s = f->lamps[l].radiance[colour];
+        const double off = f->lamps[l].fit ? fit_seen_residual(&f->lamps[l], colour, s) : 0;
+        const double lit = f->lamps[l].fit ? fit_lit_residual(&f->lamps[l], colour, s) : 0;
+        sum += off * off + lit * lit;
     }
     return sum;
 }

@@ -84,14 +84,15 @@ static double inverse_chi_squared(struct chain *c, double freedom, double square
     return 0.5 * squares / gamma_number(c, 0.5 * freedom);
 }
 
-/* Of a lamp's radiance: the prior, and what views show of the lamp. */
+/* Of a lamp's radiance: the prior, what views show of the lamp, and what all faces tell of it. */
 static double prior(const struct chain *c, int unknown)
 {
     const struct unknown u = c->p->unknowns[unknown];
     const struct fit_lamp *l = &c->p->f->lamps[u.lamp];
     const double s = l->radiance[u.colour],
-                 off = fit_seen_residual(l, u.colour, s * exp(c->scale + c->lamp_scales[u.lamp]));
-    return log(s / (s + c->least[unknown])) - 0.5 * off * off;
+                 off = fit_seen_residual(l, u.colour, s * exp(c->scale + c->lamp_scales[u.lamp])),
+                 lit = fit_lit_residual(l, u.colour, s); /* of the same indirect light */
+    return log(s / (s + c->least[unknown])) - 0.5 * (off * off + lit * lit);
 }
 
 /* ----------------------------------------------------------------------------------------------------------- steps */

@@ -23,6 +23,7 @@
 #include "common/relight/light_things.h"
 #include "stages/fit_lights/indirect.h"
 #include "stages/fit_lights/lamp_picture.h"
+#include "stages/fit_lights/lamps_on_faces.h"
 #include "stages/fit_lights/mark_candidates.h"
 #include "stages/fit_lights/solve.h"
 #include "stages/fit_lights/unseen_lamps.h"
@@ -45,6 +46,7 @@ struct job {
     struct model_rays furnished;     /* the model with them: what throws shadows */
     struct model_field field;        /* with its lamps off; empty without --vita */
     struct unseen_lamps unseen;
+    struct face_lamp *faces; /* of each lamp */
 };
 
 static enum status read_things(struct job *j, struct err *err)
@@ -108,13 +110,19 @@ static enum status gather_indirect(struct job *j, struct err *err)
 
 static bool looks_for_unseen(const struct job *j) { return j->vita && strcmp(j->params.unseen, "no") != 0; }
 
+/* Whether the light of faces is gathered: it tells of lamps. */
+static bool looks_at_faces(const struct job *j)
+{
+    return looks_for_unseen(j) || (j->vita && j->scene.lights.lamp_count > 0);
+}
+
 static enum status find_indirect(struct job *j, struct err *err)
 {
     if (j->indirect.count && !j->indirect_path && !j->vita)
         return err_set(err, ST_USAGE,
                        "%s marks points, so --vita is needed, for the indirect light there, or --indirect.", j->lamps);
     const bool is_gathered = j->indirect.count && !j->indirect_path;
-    if ((is_gathered || looks_for_unseen(j)) && read_field(j, err)) return err->status;
+    if ((is_gathered || looks_at_faces(j)) && read_field(j, err)) return err->status;
     if (is_gathered) return gather_indirect(j, err);
     if (!j->indirect.count) return ST_OK;
     return indirect_read(&j->indirect, &j->scene, &j->model.in.axes, j->indirect_path, &j->prov, err);
@@ -157,7 +165,33 @@ static enum status find_unseen(struct job *j, struct err *err)
                              err);
 }
 
-/* Fits the lamps roughly, looks for lamps that nobody marked, and adds the light of those that it finds. */
+/* What faces tell of the lamps whose radiance nobody gave, and of those that nobody marked. known: the lamps shine as
+ * they do now, and only the unmarked ones are fitted. */
+static enum status fit_faces(struct job *j, bool known, struct err *err)
+{
+    const size_t count = (size_t)j->scene.lights.lamp_count;
+    bool *is_free = calloc(count + 1, sizeof *is_free);
+    struct face_lamp *faces = calloc(count + 1, sizeof *faces);
+    if (!is_free || !faces) err_nomem(err, "lamps", count * sizeof *faces);
+    for (size_t k = 0; !err->status && k < count; k++)
+        is_free[k] = !known && !j->notes.items[j->scene.lamp_notes[k]].has_radiance;
+    if (!err->status) lamps_on_faces_fit(faces, is_free, &j->unseen, &j->scene, &j->furnished, err);
+    if (!known && !err->status) memcpy(j->faces, faces, count * sizeof *faces);
+    free(is_free);
+    free(faces);
+    return err->status;
+}
+
+static void shine_as_faces_tell(struct job *j)
+{
+    for (int k = 0; k < j->scene.lights.lamp_count; k++) {
+        const double *s = j->faces[k].radiance;
+        if (j->faces[k].is_known) j->scene.lights.lamps[k].radiance = rgb_make(s[0], s[1], s[2]);
+    }
+}
+
+/* Fits the lamps roughly to their marks, then to all faces; looks for lamps that nobody marked, and adds the light of
+ * those that it finds. */
 static enum status find_before(struct job *j, const struct solve_inputs *in, struct err *err)
 {
     struct light_list *lights = &j->scene.lights;
@@ -168,9 +202,14 @@ static enum status find_before(struct job *j, const struct solve_inputs *in, str
     if (!lamps) return err_nomem(err, "lamps", size);
     if (size) memcpy(lamps, lights->lamps, size);
     first.is_provisional = true;
+    first.faces = NULL;
     if (!solve_lights(&rough, &first, err) && !unseen_lamps_gather(&j->unseen, &j->field, err) &&
-        !find_unseen(j, err) && j->unseen.are_used)
-        unseen_lamps_light(&j->unseen, j->indirect.at, &j->scene, &j->furnished);
+        !fit_faces(j, false, err)) {
+        shine_as_faces_tell(j);
+        if (looks_for_unseen(j) && !find_unseen(j, err) && j->unseen.count) fit_faces(j, false, err);
+        if (!err->status && j->unseen.are_used)
+            unseen_lamps_light(&j->unseen, j->indirect.at, &j->scene, &j->furnished);
+    }
     if (size) memcpy(lights->lamps, lamps, size);
     free(lamps);
     solve_release(&rough);
@@ -179,9 +218,9 @@ static enum status find_before(struct job *j, const struct solve_inputs *in, str
 
 static enum status solve(struct job *j, struct solved_lights *solved, const struct solve_inputs *in, struct err *err)
 {
-    if (looks_for_unseen(j) && find_before(j, in, err)) return err->status;
+    if (looks_at_faces(j) && find_before(j, in, err)) return err->status;
     if (solve_lights(solved, in, err)) return err->status;
-    return j->unseen.count ? find_unseen(j, err) : ST_OK;
+    return j->unseen.count && !find_unseen(j, err) ? fit_faces(j, true, err) : err->status;
 }
 
 static enum status fit(struct job *j, struct err *err)
@@ -193,8 +232,16 @@ static enum status fit(struct job *j, struct err *err)
     if (!err->status && j->lamps)
         observe(&seen, &j->scene, &j->notes, &j->model, &j->furnished, j->views, j->ids, &j->params, &j->prov, err);
     if (!err->status) direct_light_make(&direct, &j->scene, &j->furnished, err);
-    const struct solve_inputs in = {&j->scene,      &j->notes,  &seen, &direct, (const double(*)[3])j->indirect.at,
-                                    &j->model.rays, &j->params, false};
+    j->faces = calloc((size_t)j->scene.lights.lamp_count + 1, sizeof *j->faces);
+    if (!err->status && !j->faces) err_nomem(err, "lamps", (size_t)j->scene.lights.lamp_count * sizeof *j->faces);
+    const struct solve_inputs in = {.scene = &j->scene,
+                                    .notes = &j->notes,
+                                    .seen = &seen,
+                                    .direct = &direct,
+                                    .indirect = (const double(*)[3])j->indirect.at,
+                                    .rays = &j->model.rays,
+                                    .params = &j->params,
+                                    .faces = j->faces};
     if (!err->status && !solve(j, &solved, &in, err)) write_lights(j, &solved, &in, err);
     solve_release(&solved);
     direct_light_release(&direct);
@@ -263,6 +310,7 @@ int main(int argc, char **argv)
             run(&j, &err);
     }
     err_report(&err);
+    free(j.faces);
     indirect_release(&j.indirect);
     unseen_lamps_release(&j.unseen);
     model_field_release(&j.field);

@@ -84,13 +84,19 @@ void fit_set_residuals(struct problem *p)
     }
 }
 
-int fit_residual_count(const struct problem *p) { return 3 * (p->f->point_count + p->f->lamp_count); }
+int fit_residual_count(const struct problem *p) { return 3 * (p->f->point_count + 2 * p->f->lamp_count); }
 
 double fit_seen_residual(const struct fit_lamp *lamp, int colour, double radiance)
 {
     if (!(lamp->seen_error[colour] > 0 && lamp->seen[colour] > 0)) return 0;
     const double r = log(radiance / lamp->seen[colour]) / lamp->seen_error[colour];
     return lamp->seen_is_bound ? fmin(r, 0) : r;
+}
+
+double fit_lit_residual(const struct fit_lamp *lamp, int colour, double radiance)
+{
+    if (!(lamp->lit_error[colour] > 0 && lamp->lit[colour] > 0)) return 0;
+    return log(radiance / lamp->lit[colour]) / lamp->lit_error[colour];
 }
 
 void fit_evaluate(void *ctx, const double *x, double *residuals)
@@ -102,8 +108,10 @@ void fit_evaluate(void *ctx, const double *x, double *residuals)
     memcpy(residuals, p->whitened, points * sizeof *residuals);
     for (int l = 0; l < p->f->lamp_count; l++) {
         const struct fit_lamp *lamp = &p->f->lamps[l];
-        for (int c = 0; c < 3; c++)
-            residuals[points + 3 * (size_t)l + (size_t)c] =
-                lamp->fit ? fit_seen_residual(lamp, c, lamp->radiance[c]) : 0;
+        for (int c = 0; c < 3; c++) {
+            double *r = residuals + points + 6 * (size_t)l + 2 * (size_t)c;
+            r[0] = lamp->fit ? fit_seen_residual(lamp, c, lamp->radiance[c]) : 0;
+            r[1] = lamp->fit ? fit_lit_residual(lamp, c, lamp->radiance[c]) : 0;
+        }
     }
 }

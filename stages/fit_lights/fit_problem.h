@@ -49,11 +49,13 @@ void fit_get_unknowns(const struct problem *p, double *x);
 void fit_set_logs(struct problem *p);
 /* Sets the logarithms, then the whitened residuals and k_d of the materials. */
 void fit_set_residuals(struct problem *p);
-/* The residuals of a fit: of the points' colours, then of the lamps' pictures. */
+/* The residuals of a fit: of the points' colours, of the lamps' pictures, and of what faces tell of the lamps. */
 int fit_residual_count(const struct problem *p);
 /* The deviation of a lamp's radiance from what views show of it, in standard errors; of a lower bound, only below
  * it. */
 double fit_seen_residual(const struct fit_lamp *lamp, int colour, double radiance);
+/* The same of what all faces tell. */
+double fit_lit_residual(const struct fit_lamp *lamp, int colour, double radiance);
 /* Sets the unknowns, then the residuals, whitened. ctx: the problem. */
 void fit_evaluate(void *ctx, const double *x, double *residuals);
 

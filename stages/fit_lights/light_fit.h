@@ -35,6 +35,7 @@ struct fit_lamp {
     double middle[2][3];                      /* and of its middle half */
     double seen[3], seen_error[3]; /* radiance that views show of the lamp itself; relative standard errors, 0: none */
     bool seen_is_bound;            /* the lamp saturates there: it is at least as bright */
+    double lit[3], lit_error[3];   /* radiance that all faces tell; standard errors of its logarithm, 0: none */
 };
 
 struct fit_material {

@@ -36,6 +36,7 @@ enum { NAME_SIZE = 600, LINE_STRIDE = 8 /* of a line's points, one in so many is
 #define SAME_NORMAL 0.98 /* and the cosine between their normals is at least this */
 #define LEAST_OFF   0.15 /* of its radiance, by which a mark is off before it is named, */
 #define SURE_OFF    2.5  /* and standard errors */
+#define TOLD        0.15 /* standard error of what all faces tell of a lamp, below which its marks do not count */
 
 static const char *const source_words[] = {"given", "fitted", "measured", "bound", "unknown"};
 
@@ -53,6 +54,16 @@ void solve_release(struct solved_lights *s)
 static const struct annotation *note_of_lamp(const struct solve_inputs *in, int lamp)
 {
     return &in->notes->items[in->scene->lamp_notes[lamp]];
+}
+
+/* Whether all faces tell of a lamp so well that its marks, which lie on faces, would only count twice. If views measure
+ * the lamp, or its exponent is fitted, all evidence counts together. */
+static bool is_told(const struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    const struct annotation *a = note_of_lamp(in, lamp);
+    bool told = in->faces && in->faces[lamp].is_known && !a->has_radiance && a->has_exponent != QUANTITY_FIT;
+    for (int c = 0; told && c < 3; c++) told = in->faces[lamp].error[c] < TOLD;
+    return told && !s->lamps[lamp].unsaturated;
 }
 
 /* ------------------------------------------------------------------------------------------- lamps seen themselves */
@@ -240,6 +251,7 @@ static bool has_points(const struct solved_lights *s, const struct solve_inputs 
 
 static bool is_fitted(const struct solved_lights *s, const struct solve_inputs *in, int lamp)
 {
+    if (is_told(s, in, lamp)) return true;
     return !note_of_lamp(in, lamp)->has_radiance && s->lamps[lamp].measured_points > 0;
 }
 
@@ -330,6 +342,29 @@ static void add_seen(struct fit_lamp *l, const struct lamp_result *r, const stru
     }
 }
 
+/* What all faces tell of a lamp. The exponent of a lamp, if that is fitted, would have to be known. */
+static void add_lit(struct fit_lamp *l, const struct solve_inputs *in, int lamp)
+{
+    if (!in->faces || !in->faces[lamp].is_known || l->fit_exponent) return;
+    memcpy(l->lit, in->faces[lamp].radiance, sizeof l->lit);
+    memcpy(l->lit_error, in->faces[lamp].error, sizeof l->lit_error);
+}
+
+/* The lamp has the radiance that all faces tell. All of their indirect light may be off by one factor. */
+static void take_told(struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    const struct face_lamp *f = &in->faces[lamp];
+    struct lamp_result *r = &s->lamps[lamp];
+    for (int c = 0; c < 3; c++) {
+        const double error = hypot(f->error[c], in->params->irradiance_error);
+        r->low[c] = f->radiance[c] * exp(-CONFIDENCE * error);
+        r->high[c] = f->radiance[c] * exp(CONFIDENCE * error);
+        r->radiance_error[c] = (r->high[c] - r->low[c]) / (2 * CONFIDENCE);
+    }
+    in->scene->lights.lamps[lamp].radiance = rgb_make(f->radiance[0], f->radiance[1], f->radiance[2]);
+    r->source = LAMP_FITTED;
+}
+
 /* Before beta is known well, points near a cone's edge may seem to be of another material. */
 enum pass { PASS_PROVISIONAL, PASS_POINTS, PASS_POINTS_AND_PICTURES };
 
@@ -343,13 +378,15 @@ static enum status fit_radiances(struct solved_lights *s, const struct solve_inp
     if (!lamps) return err_nomem(err, "lamps", (size_t)list->lamp_count * sizeof *lamps);
     for (int i = 0; i < list->lamp_count; i++) {
         const struct lamp *l = &list->lamps[i];
-        const bool fit = is_fitted(s, in, i);
+        const bool told = is_told(s, in, i), fit = !told && is_fitted(s, in, i);
+        if (told) take_told(s, in, i);
         lamps[i] = (struct fit_lamp){.name = l->name,
                                      .fit = fit,
                                      .fit_exponent = fit && note_of_lamp(in, i)->has_exponent == QUANTITY_FIT,
                                      .radiance = {l->radiance.r, l->radiance.g, l->radiance.b},
                                      .exponent = l->exponent};
         if (pass == PASS_POINTS_AND_PICTURES) add_seen(&lamps[i], &s->lamps[i], in);
+        add_lit(&lamps[i], in, i);
     }
     struct light_fit f = {.points = s->points,
                           .lamps = lamps,
@@ -508,7 +545,7 @@ enum status solve_lights(struct solved_lights *s, const struct solve_inputs *in,
     begin_lamps(s, in);
     for (int i = 0; i < lamps; i++) {
         measure_lamp(&s->lamps[i], in, i);
-        s->lamps[i].uses_places = !s->lamps[i].unsaturated;
+        s->lamps[i].uses_places = !s->lamps[i].unsaturated && !is_told(s, in, i);
     }
     if (list_points(s, in, err) || fit_cones(s, in, false, err)) return err->status;
     take_unfitted(s, in);

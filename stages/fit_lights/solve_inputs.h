@@ -3,6 +3,7 @@
 #define REMODEL_FIT_LIGHTS_SOLVE_INPUTS_H
 
 #include "stages/fit_lights/direct.h"
+#include "stages/fit_lights/face_light.h"
 #include "stages/fit_lights/fit_lights_params.h"
 #include "stages/fit_lights/observe_lights.h"
 
@@ -14,7 +15,8 @@ struct solve_inputs {
     const double (*indirect)[3];   /* of each point */
     const struct model_rays *rays; /* for the names of faces and the height */
     const struct fit_lights_params *params;
-    bool is_provisional; /* without intervals and warnings: the lamps are fitted again */
+    const struct face_lamp *faces; /* what all faces tell of each lamp; NULL: nothing */
+    bool is_provisional;           /* without intervals and warnings: the lamps are fitted again */
 };
 
 #endif
