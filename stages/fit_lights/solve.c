@@ -36,7 +36,7 @@ enum { NAME_SIZE = 600, LINE_STRIDE = 8 /* of a line's points, one in so many is
 #define SAME_NORMAL 0.98 /* and the cosine between their normals is at least this */
 #define LEAST_OFF   0.15 /* of its radiance, by which a mark is off before it is named, */
 #define SURE_OFF    2.5  /* and standard errors */
-#define TOLD        0.15 /* standard error of what all faces tell of a lamp, below which its marks do not count */
+#define TOLD        0.25 /* standard error of what all faces tell of a lamp, below which its marks do not count */
 
 static const char *const source_words[] = {"given", "fitted", "measured", "bound", "unknown"};
 

@@ -176,8 +176,8 @@ static enum status solve(const char *lamp, const char *points, struct err *err)
     for (int i = 0; i < room.scene.point_count; i++)
         for (int c = 0; c < 3; c++) room.indirect[i][c] = indirect_at(room.scene.points[i].at);
     const struct solve_inputs in = {
-        &room.scene,      &room.notes, &room.seen, &room.direct_light, (const double(*)[3])room.indirect,
-        &room.model.rays, &params,     false};
+        &room.scene, &room.notes, &room.seen, &room.direct_light, (const double(*)[3])room.indirect, &room.model.rays,
+        &params,     NULL,        false};
     if (!err->status) solve_lights(&room.solved, &in, err);
     provenance_release(&prov);
     return err->status;
@@ -497,6 +497,7 @@ static void a_view_in_which_a_lamp_is_hidden_does_not_measure_it(void **state)
                               (const double(*)[3])room.indirect,
                               &room.model.rays,
                               &(struct fit_lights_params)FIT_LIGHTS_PARAMS_DEFAULT,
+                              NULL,
                               false};
     for (int step = 0; step < 2; step++) {
         struct solved_lights found = {0};
