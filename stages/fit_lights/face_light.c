@@ -33,13 +33,13 @@
 
 enum { LEAST_SQUARES = 20, LEAST_FACES = 3, STEPS = 60, FEW_STEPS = 25, MEANS = 3, WIDE_STEPS = 10 };
 #define FREEDOM     2.0
-#define WIDE        0.3   /* the width at the start: a factor of 1.35 */
-#define LEAST_WIDTH 0.03  /* of a face */
-#define LARGEST     0.5   /* step of a logarithm */
-#define SMALLEST    1e-4  /* step that ends the fit */
-#define RIDGE       1e-6  /* of the squares' weights: what a lamp without light at any square is held by */
-#define USUAL       0.98  /* of the squares of lit faces are lit less */
-#define DARKEST     -13.0 /* logarithm of radiance: squares below it are black */
+#define WIDE        0.3     /* the width at the start: a factor of 1.35 */
+#define LEAST_WIDTH 0.03    /* of a face */
+#define LARGEST     0.5     /* step of a logarithm */
+#define SMALLEST    1e-4    /* step that ends the fit */
+#define RIDGE       1e-6    /* of the squares' weights: what a lamp without light at any square is held by */
+#define USUAL       0.98    /* of the squares of lit faces are lit less */
+#define DARKEST     (-13.0) /* logarithm of radiance: squares below it are black */
 #define LEAST_ERROR 0.02
 #define MOST_ERROR  0.5 /* standard error of the logarithm of a radiance that is still known */
 

@@ -56,14 +56,22 @@ static const struct annotation *note_of_lamp(const struct solve_inputs *in, int 
     return &in->notes->items[in->scene->lamp_notes[lamp]];
 }
 
-/* Whether all faces tell of a lamp so well that its marks, which lie on faces, would only count twice. If views measure
- * the lamp, or its exponent is fitted, all evidence counts together. */
-static bool is_told(const struct solved_lights *s, const struct solve_inputs *in, int lamp)
+/* Whether all faces tell of a lamp. A cone is a spot on a face or two, which may be of another material there: marks on
+ * both sides of its edge tell more. A fitted exponent would have to be known. */
+static bool has_faces(const struct solve_inputs *in, int lamp)
 {
     const struct annotation *a = note_of_lamp(in, lamp);
-    bool told = in->faces && in->faces[lamp].is_known && !a->has_radiance && a->has_exponent != QUANTITY_FIT;
+    const bool is_cone = in->scene->lights.lamps[lamp].beta < 0.5 * PI;
+    return in->faces && in->faces[lamp].is_known && !a->has_radiance && a->has_exponent != QUANTITY_FIT && !is_cone;
+}
+
+/* Whether they tell of it so well that its marks, which lie on faces, would only count twice. If views measure the
+ * lamp, all evidence counts together. */
+static bool is_told(const struct solved_lights *s, const struct solve_inputs *in, int lamp)
+{
+    bool told = has_faces(in, lamp) && !s->lamps[lamp].unsaturated;
     for (int c = 0; told && c < 3; c++) told = in->faces[lamp].error[c] < TOLD;
-    return told && !s->lamps[lamp].unsaturated;
+    return told;
 }
 
 /* ------------------------------------------------------------------------------------------- lamps seen themselves */
@@ -342,10 +350,9 @@ static void add_seen(struct fit_lamp *l, const struct lamp_result *r, const stru
     }
 }
 
-/* What all faces tell of a lamp. The exponent of a lamp, if that is fitted, would have to be known. */
 static void add_lit(struct fit_lamp *l, const struct solve_inputs *in, int lamp)
 {
-    if (!in->faces || !in->faces[lamp].is_known || l->fit_exponent) return;
+    if (!has_faces(in, lamp)) return;
     memcpy(l->lit, in->faces[lamp].radiance, sizeof l->lit);
     memcpy(l->lit_error, in->faces[lamp].error, sizeof l->lit_error);
 }
