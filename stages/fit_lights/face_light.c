@@ -1,23 +1,23 @@
 /* face_light.c - see face_light.h.
  *
  * Overview. A few rectangles on one or two walls see a narrow range of light, so that texture, and the errors of
- * indirect light there, pass for light of a lamp. Over all photographed faces the share of a lamp runs from a tenth, at
- * the top of walls, to nine tenths, and each wall's error is its own. So every square of every face is evidence: the
- * reflectance of a face is the same in the light and beside it, whatever it is.
+ * indirect light there, pass for light of a lamp. Over all photographed faces the share of a lamp runs from a tenth,
+ * at the top of walls, to nine tenths, and each wall's error is its own. So every square of every face is evidence:
+ * the reflectance of a face is the same in the light and beside it, whatever it is.
  *
  * Mathematics. Square i of face f has radiance L_i, irradiance E_i from all but the lamps, and D_ij from lamp j of
  * radiance 1. The residuals
  *     r_i = log L_i - log(E_i + sum over j of S_j D_ij) - m_f
- * have Student's t distribution with FREEDOM degrees and a width of the face, so that prints, rugs, pictures and patches
- * of sun count little, and a face of boards counts less than a plain one. S, the means m and the widths are those of the
- * greatest likelihood, by iteratively reweighted least squares [Lange 1989]: the means are eliminated, each step of log
- * S solves the normal equations, and widths follow from the weighted squares. It begins with lamps that give as much
- * light as all else where they shine most, and with wide distributions, so that hardly any square is left out before
- * the lamps are about right. Each colour is fitted alone.
+ * have Student's t distribution with FREEDOM degrees and a width of the face, so that prints, rugs, pictures and
+ * patches of sun count little, and a face of boards counts less than a plain one. S, the means m and the widths are
+ * those of the greatest likelihood, by iteratively reweighted least squares [Lange 1989]: the means are eliminated,
+ * each step of log S solves the normal equations, and widths follow from the weighted squares. It begins with lamps
+ * that give as much light as all else where they shine most, and with wide distributions, so that hardly any square
+ * is left out before the lamps are about right. Each colour is fitted alone.
  *
- * Errors. The errors of indirect light differ from face to face, so the standard errors are a jackknife over faces, made
- * wider for so few of them (the quantile of Student's t distribution over that of the normal one), and never below that
- * of independent squares. A lamp that one face alone tells of is not known.
+ * Errors. The errors of indirect light differ from face to face, so the standard errors are a jackknife over faces,
+ * made wider for so few of them (the quantile of Student's t distribution over that of the normal one), and never
+ * below that of independent squares. A lamp that one face alone tells of is not known.
  *
  * Limits. A face of which one part is of another material, just where a lamp shines, is believed; the other faces and
  * the jackknife say so. Ceilings above lamps tell nothing. */

@@ -6,7 +6,8 @@
 #include "stages/fit_lights/unseen_lamps.h"
 
 /* Fits the lamps of the scene for which is_free is set, and those that nobody marked; the others shine as they are.
- * Fills lamps, one for each of the scene; sets intensity and error of u->lamps that are known. u: gathered. ST_NOMEM. */
+ * Fills lamps, one for each of the scene; sets intensity and error of u->lamps that are known. u: gathered.
+ * ST_NOMEM. */
 enum status lamps_on_faces_fit(struct face_lamp *lamps, const bool *is_free, struct unseen_lamps *u,
                                const struct lit_scene *scene, const struct model_rays *furnished, struct err *err);
 
