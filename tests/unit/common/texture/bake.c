@@ -608,6 +608,59 @@ static void a_face_that_no_view_shows_gets_the_default_colour(void **state)
     end(&f);
 }
 
+/* Two photos of a floor without a viewpoint show one half each, 0.2 and 0.4; a strip that both show is too narrow for a
+ * gain. Where they meet no view has a difference, so that the texels are continuous there: they leave their photos by
+ * about half the step in display units, and come back with the distance. In one dimension u'' = k^2 u, with k^2 the
+ * weight of the colours. So they are off by A cosh(k (n - d)) / cosh(k n) at a distance of d of n texels; the two A add
+ * up to the step, and slopes agree at the joint. */
+static void without_a_viewpoint_texels_come_back_to_their_photos(void **state)
+{
+    enum { WIDTH = 512, ROWS = 4 };
+    static const char *const names[] = {"a", "b"};
+    static const int groups[] = {0, 1};
+    static const bool own[] = {false, false};
+    static const float colours[] = {0.2f, 0.4f};
+    const struct texture_params params = TEXTURE_PARAMS_DEFAULT;
+    const double side = 4.0 / WIDTH, decay = 0.01; /* k */
+    struct bake b = {.surfaces = &floor_only, .params = &params, .own_group = -1, .white = 1};
+    struct bake_tile tile = {.side = side};
+    struct bake_totals totals;
+    struct err err = ERR_INIT;
+    (void)state;
+    tile.raster = (struct surface_raster){WIDTH, ROWS, {{side, 0, 0}, {0, side, 2}, {0, 0, 0}, {0, 0, 1}}};
+    assert_ok(bake_add_tile(&b, tile, &err), err);
+    assert_ok(bake_set_sources(&b, names, groups, own, 2, &err), err);
+    memset(b.role, TEXEL_WANTED, (size_t)WIDTH * ROWS);
+    assert_ok(bake_list_texels(&b, &err), err);
+    for (int k = 0; k < 2; k++) {
+        struct source_view v;
+        make_view(&v, 2, 2, 1);
+        for (int i = 0; i < SIZE * SIZE; i++) {
+            for (int c = 0; c < 3; c++) v.levels[0].rgba[4 * i + c] = colours[k];
+            if (k ? i % SIZE < SIZE / 2 - 1 : i % SIZE > SIZE / 2) v.id[i] = 0;
+        }
+        bake_add_view(&b, &v, k);
+        source_view_release(&v);
+    }
+    assert_ok(bake_find_gains(&b, &err), err);
+    bake_choose(&b);
+    assert_ok(bake_composite(&b, &totals, &err), err);
+    assert_int_equal(totals.warped, WIDTH * ROWS);
+    const double step = (double)bake_display(colours[1], 1) - (double)bake_display(colours[0], 1);
+    int joint = 0;
+    while (joint < WIDTH && b.made[joint] == ATLAS_VIEWS) joint++;
+    assert_true(abs(joint - WIDTH / 2) < 12);
+    const double left = tanh(decay * joint), right = tanh(decay * (WIDTH - joint));
+    for (int x = 0; x < WIDTH; x++) {
+        const bool is_left = x < joint;
+        const double n = is_left ? joint : WIDTH - joint, d = fabs(x + 0.5 - joint);
+        const double most = step * (is_left ? right : -left) / (left + right);
+        const double off = (double)bake_display(b.rgb[3 * x], 1) - (double)bake_display(colours[is_left ? 0 : 1], 1);
+        assert_true(fabs(off - most * cosh(decay * (n - d)) / cosh(decay * n)) < 0.01 * step);
+    }
+    bake_release(&b);
+}
+
 static void a_source_is_refused_where_it_may_not_be_used(void **state)
 {
     (void)state;
@@ -725,6 +778,7 @@ int main(void)
         cmocka_unit_test(pages_of_the_filled_atlas_are_recorded_once_in_each_product),
         cmocka_unit_test(a_page_that_cannot_be_read_is_an_error),
         cmocka_unit_test(a_face_that_no_view_shows_gets_the_default_colour),
+        cmocka_unit_test(without_a_viewpoint_texels_come_back_to_their_photos),
         cmocka_unit_test(a_source_is_refused_where_it_may_not_be_used),
         cmocka_unit_test(pixels_clipped_in_four_photos_are_shown_and_in_three_are_not),
         cmocka_unit_test(a_clipped_pixel_gives_way_to_a_clean_one),
