@@ -394,7 +394,7 @@ static enum status draw_frame(struct filming *j, const struct level_hour *hour, 
 
 static enum status write_frames(struct filming *j, const struct level_days *d, const char *path, struct err *err)
 {
-    static const struct frame_quality quality = {"medium", CRF};
+    static const struct frame_quality quality = {.preset = "medium", .crf = CRF};
     struct frame_encoder encoder = {0};
     struct progress progress;
     const int frames = d->days[0].count;

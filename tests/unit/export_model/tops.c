@@ -211,6 +211,7 @@ static void sloping_slabs_leaves_and_panes_are_in_the_ifc_file(void **state)
     assert_ok(export_faces_make(&faces, &mesh, NULL, &atlas, &err), err);
     const struct export_objects none = {.meshes = NULL};
     const struct export_things no_things = {.things = NULL};
+    const struct export_lamps no_lamps = {.planned = {.count = 0}};
     const struct export_scene scene = {.name = "room",
                                        .mesh = &mesh,
                                        .faces = &faces,
@@ -218,7 +219,8 @@ static void sloping_slabs_leaves_and_panes_are_in_the_ifc_file(void **state)
                                        .objects = &none,
                                        .metric = true,
                                        .out = scratch,
-                                       .things = &no_things};
+                                       .things = &no_things,
+                                       .lamps = &no_lamps};
     assert_ok(write_ifc(&scene, &err), err);
     text = scratch_read(scratch_path("model.ifc"));
     expect_whole_step_file(text, &lines);
