@@ -2,6 +2,7 @@
 #include "common/base/memory_text.h"
 
 #include <stdbool.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/types.h>
@@ -14,9 +15,12 @@ static ssize_t take(void *cookie, const char *bytes, size_t count)
     struct memory_text *m = cookie;
     if (m->room - m->size <= count) {
         size_t room = m->room ? m->room : FIRST_ROOM;
-        while (room - m->size <= count) room *= 2;
+        while (room - m->size <= count) {
+            if (room > SIZE_MAX / 2) return 0; /* which is an error */
+            room *= 2;
+        }
         char *text = realloc(m->text, room);
-        if (!text) return 0; /* which is an error */
+        if (!text) return 0;
         m->text = text;
         m->room = room;
     }

@@ -49,7 +49,7 @@ static void what_does_not_fit_is_an_error(void **state)
     /* as if its buffer were full and could not grow */
     free(m.text);
     m.text = NULL;
-    m.size = m.room = ((size_t)-1 >> 1) - 8;
+    m.size = m.room = SIZE_MAX - 8;
     fputs("a longer text", m.to);
     assert_int_equal(memory_text_close(&m, "a text", &err), ST_NOMEM);
     assert_null(m.text);
