@@ -59,12 +59,14 @@ enum status name_list_add_files(struct name_list *list, const char *folder, cons
     if (!dir) return errno == ENOENT || errno == ENOTDIR ? ST_OK : err_errno(err, "open", folder);
     const size_t head = strlen(before), tail = strlen(after);
     struct name_list found = {0};
-    for (const struct dirent *entry; !err->status && (entry = readdir(dir));) {
+    errno = 0;
+    for (const struct dirent *entry; !err->status && (entry = readdir(dir)); errno = 0) {
         const char *name = entry->d_name;
         const size_t n = strlen(name);
         if (*name == '.' || n <= head + tail || strncmp(name, before, head) || strcmp(name + n - tail, after)) continue;
         if (is_plain(name + head, n - head - tail)) name_list_add(&found, name + head, n - head - tail, err);
     }
+    if (!err->status && errno) err_errno(err, "list", folder);
     closedir(dir);
     name_list_sort(&found);
     for (int i = 0; !err->status && i < found.count; i++)

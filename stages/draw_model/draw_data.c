@@ -4,6 +4,7 @@
 #include "stages/draw_model/draw_data.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -49,6 +50,7 @@ static enum status write_folder(FILE *to, const char *as, const char *folder, st
 {
     struct dirent **entries = NULL;
     const int count = scandir(folder, &entries, is_text, alphasort);
+    if (count < 0 && errno != ENOENT) err_errno(err, "list", folder);
     for (int i = 0; i < count; i++) {
         char path[FILE_PATH], name[FILE_PATH];
         if (!err->status && !file_path(path, folder, entries[i]->d_name, "", err) &&

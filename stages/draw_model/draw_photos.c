@@ -6,6 +6,7 @@
  * Each is a JPEG in a script: of a page that was opened from a disk, a browser shows picture files, but does not give
  * their pixels, which the draft of an edit needs. The list of photos shows small ones. */
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -102,6 +103,7 @@ static enum status write_references(const char *folder, FILE *list, const struct
 {
     struct dirent **entries = NULL;
     const int count = from->references ? scandir(from->references, &entries, is_jpeg, alphasort) : 0;
+    if (count < 0 && errno != ENOENT) err_errno(err, "list", from->references);
     for (int i = 0; i < count; i++) {
         struct photo photo = {0};
         char path[FILE_PATH], id[FILE_PATH];

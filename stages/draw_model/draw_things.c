@@ -3,6 +3,7 @@
  * Masks of furniture are made for views; the page has photographs. So a grid of pixels of each photo is looked up in
  * the views that were cut out of it. */
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -28,6 +29,7 @@ enum status draw_masks_write(FILE *to, const struct draw_sources *from, struct e
     struct dirent **entries = NULL;
     if (file_path(folder, from->scene, "masks", "", err)) return err->status;
     const int count = scandir(folder, &entries, is_png, alphasort);
+    if (count < 0 && errno != ENOENT) err_errno(err, "list", folder);
     for (int i = 0; i < count; i++) {
         char path[FILE_PATH];
         if (!err->status && !file_path(path, folder, entries[i]->d_name, "", err)) {

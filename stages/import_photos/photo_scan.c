@@ -483,7 +483,8 @@ enum status photo_scan_remove_others(const char *records, const char *const *ids
 {
     DIR *dir = opendir(records);
     if (!dir) return err_errno(err, "open", records);
-    for (struct dirent *entry; !err->status && (entry = readdir(dir));) {
+    errno = 0;
+    for (struct dirent *entry; !err->status && (entry = readdir(dir)); errno = 0) {
         size_t length = strlen(entry->d_name);
         if (length < 5 || strcmp(entry->d_name + length - 4, ".txt") || entry->d_name[0] == '.' ||
             !strcmp(entry->d_name, "list.txt") || has_id(ids, count, entry->d_name, length - 4))
@@ -495,6 +496,7 @@ enum status photo_scan_remove_others(const char *records, const char *const *ids
             err_errno(err, "remove", path);
         free(path);
     }
+    if (!err->status && errno) err_errno(err, "list", records);
     closedir(dir);
     return err->status;
 }

@@ -22,8 +22,10 @@ static enum status add_given_folder(struct ledger *l, const char *folder, struct
     char path[FILE_PATH];
     DIR *dir = opendir(folder);
     if (!dir) return err_errno(err, "open", folder);
-    for (const struct dirent *e; !err->status && (e = readdir(dir));)
+    errno = 0;
+    for (const struct dirent *e; !err->status && (e = readdir(dir)); errno = 0)
         if (e->d_name[0] != '.' && !file_path(path, folder, e->d_name, "", err)) add_given(l, path, err);
+    if (!err->status && errno) err_errno(err, "list", folder);
     closedir(dir);
     return err->status;
 }
