@@ -2,6 +2,7 @@
 #include "stages/report/contents_parts.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -172,6 +173,7 @@ enum status contents_read_effects(struct contents *c, const char *folder, struct
     char path[FILE_PATH], film[FILE_PATH];
     snprintf(path, sizeof path, "%s/parallax", folder);
     int count = scandir(path, &names, NULL, alphasort);
+    if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
 
     c->effects = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *c->effects);
     if (!c->effects) err_nomem(err, "effects", (size_t)count * sizeof *c->effects);
@@ -240,6 +242,7 @@ enum status contents_read_tours(struct contents *c, const char *folder, struct e
         char path[PATH_SIZE], film[FILE_PATH];
         snprintf(path, sizeof path, "%s/%s", folder, below[k]);
         const int count = scandir(path, &names, NULL, alphasort);
+        if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
         for (int i = 0; i < count; i++) {
             snprintf(film, sizeof film, "%s/%s/tour", below[k], names[i]->d_name);
             if (!err->status && names[i]->d_name[0] != '.') read_tour(c, folder, film, names[i]->d_name, k == 1, err);

@@ -18,6 +18,7 @@
 #include "stages/report/contents_light.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <math.h>
 #include <stdlib.h>
@@ -280,6 +281,7 @@ static enum status read_gathers(struct contents *c, const char *folder, const ch
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/relight/%s", folder, below);
     const int count = scandir(path, &names, is_record, alphasort);
+    if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     for (int i = 0; i < count; i++) {
         char *name = names[i]->d_name;
         name[strlen(name) - strlen(SUFFIX)] = '\0';
@@ -324,6 +326,7 @@ enum status contents_read_relit(struct contents *c, const char *folder, const ch
     snprintf(records, sizeof records, "%s/photos", shared);
     const struct relit_sources from = {folder, records, &c->lenses};
     const int count = scandir(path, &names, is_plain, alphasort);
+    if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     for (int i = 0; i < count; i++) {
         if (!err->status) read_relit_edit(c, &from, names[i]->d_name, err);
         free(names[i]);

@@ -2,6 +2,7 @@
 #include "stages/report/contents_parts.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -34,6 +35,7 @@ enum status contents_read_axes(struct contents *c, const char *folder, struct er
     if (!contents_product(path, folder, PRODUCT_AXES, NULL)) return ST_OK;
     snprintf(path, sizeof path, "%s/model/axes", folder);
     int count = scandir(path, &names, NULL, alphasort);
+    if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     c->axes = calloc((size_t)(count > 0 ? count : 0) + 1, sizeof *c->axes);
     if (!c->axes) err_nomem(err, "pictures of axes", (size_t)count * sizeof *c->axes);
     for (int i = 0; i < count; i++) {
@@ -62,6 +64,7 @@ static enum status list_overlays(struct model_card *m, const char *folder, const
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s/overlay", folder, model);
     const int found = scandir(path, &names, is_jpeg, alphasort), all = found > 0 ? found : 0;
+    if (found < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     const int shown = m->name[0] && all > OVERLAYS_OF_EDIT ? OVERLAYS_OF_EDIT : all;
     m->overlays = calloc((size_t)shown + 1, sizeof *m->overlays);
     m->overlay_ids = calloc((size_t)shown + 1, sizeof *m->overlay_ids);
@@ -103,6 +106,7 @@ enum status contents_read_models(struct contents *c, const char *folder, struct 
     read_model(c, folder, "model", "", err);
     snprintf(path, sizeof path, "%s/remodel", folder);
     const int count = scandir(path, &names, NULL, alphasort);
+    if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     for (int i = 0; i < count; i++) {
         snprintf(model, sizeof model, "remodel/%s", names[i]->d_name);
         if (!err->status && names[i]->d_name[0] != '.') read_model(c, folder, model, names[i]->d_name, err);

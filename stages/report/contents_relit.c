@@ -12,6 +12,7 @@
 #include "stages/report/contents_relit.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <limits.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -131,6 +132,7 @@ static enum status read_records(struct relit_reading *r, const char *folder, str
 {
     struct dirent **names = NULL;
     const int found = scandir(folder, &names, is_record, alphasort), count = found > 0 ? found : 0;
+    if (found < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", folder);
     r->records = calloc((size_t)count + 1, sizeof *r->records);
     if (!r->records) err_nomem(err, "records of pictures", (size_t)count * sizeof *r->records);
     for (int i = 0; i < count; i++) {

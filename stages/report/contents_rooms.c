@@ -4,6 +4,7 @@
  * the picture in the new light (O/relight/E). They are read first, since they say how much of a view changes and how
  * much of that is known; from them follow the photos that are shown, and then their pictures are made. */
 #include <dirent.h>
+#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -58,6 +59,7 @@ static enum status list_changes(struct rooms_reading *r, struct err *err)
     char path[FILE_PATH];
     if (file_path(path, r->from->folder, "remodel", "", err)) return err->status;
     const int count = scandir(path, &names, NULL, alphasort);
+    if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     for (int i = 0; i < count; i++) {
         if (!err->status && names[i]->d_name[0] != '.') read_change(r, names[i]->d_name, err);
         free(names[i]);

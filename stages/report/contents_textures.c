@@ -12,6 +12,7 @@
 #include "stages/report/contents_parts.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -209,6 +210,7 @@ static enum status list_viewpoints(char ***names, int *count, const char *folder
     char path[PATH_SIZE], below[FILE_PATH], atlas[FILE_PATH];
     snprintf(path, sizeof path, "%s/vdta", folder);
     const int found = scandir(path, &entries, NULL, alphasort);
+    if (found < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     const size_t room = (size_t)(found > 0 ? found : 0) + 1;
     *names = calloc(room, sizeof **names);
     if (!*names) err_nomem(err, "names", room * sizeof **names);

@@ -206,6 +206,8 @@ static enum outcome judge_words(const char *words)
 /* Whether a page that was made all the same says what went wrong: the page of a scene shows what it can. */
 static bool is_said(int error, const char *path)
 {
+    const size_t n = strlen(c.folder);
+    if (!strncmp(path, c.folder, n) && path[n] == '/') path += n + 1;
     const char *words[] = {path, error ? strerror(error) : "not enough memory", "not enough memory",
                            "Cannot allocate memory"};
 
