@@ -220,7 +220,8 @@ const main = async () => {
             .filter((f) => fs.existsSync(path.join(folder, f)));
         const size = [...new Set([...links.map(decodeURIComponent), 'index.html', ...relit])]
             .reduce((s, f) => s + fs.statSync(path.join(folder, f)).size, 0);
-        checkSize(check, size);
+        checkSize(check, size * 2 / (relit.length || 2)); // of the room and one edit
+        console.log(`# all of it: ${(size / 1e6).toFixed(2)} MB, ${fs.statSync(html).size / 1e6} MB of them the page`);
     } finally {
         await browser.close(profile);
     }
