@@ -12,7 +12,6 @@
 
 /* x264's output depends on its number of threads, so the number is fixed */
 #define ENCODER_THREADS "2"
-#define THREADS_OF(key) key "=" ENCODER_THREADS
 
 /* primaries and transfer are set in the frames: ffmpeg 7 drops them as options of the output */
 static const char rgb_filters[] = "scale=out_color_matrix=bt709:out_range=tv:flags=accurate_rnd+full_chroma_int+"
@@ -61,9 +60,8 @@ static void add_x264(struct command *c, const struct frame_quality *q)
 static void add_x265(struct command *c, const struct frame_quality *q, enum film_curve curve)
 {
     const int used = snprintf(c->codec, sizeof c->codec,
-                              "log-level=error:info=0:" THREADS_OF(
-                                  "pools") ":frame-threads=1:repeat-headers=1:"
-                                           "colorprim=%s:transfer=%s:colormatrix=%s:range=limited:chromaloc=0",
+                              "log-level=error:info=0:pools=" ENCODER_THREADS ":frame-threads=1:repeat-headers=1:"
+                              "colorprim=%s:transfer=%s:colormatrix=%s:range=limited:chromaloc=0",
                               primaries_of(curve), transfer_of(curve), matrix_of(curve));
     /* the mastering display: primaries and white of BT.2020, in 0.00002; light in 0.0001 cd/m2 [SMPTE 2018] */
     if (curve == FILM_PQ && used > 0 && used < WORD)
@@ -85,7 +83,8 @@ static void add_codec(struct command *c, const struct frame_quality *q, const st
         snprintf(c->crf, sizeof c->crf, "%d", (q->crf * 63 + 25) / 51); /* its scale ends at 63 */
         snprintf(c->preset, sizeof c->preset, "%d", av1_preset(q->preset));
         setenv("SVT_LOG", "1", 0); /* errors only; it does not heed ffmpeg's -loglevel */
-        ADD(c, "-preset", c->preset, "-crf", c->crf, "-svtav1-params", THREADS_OF("lp"));
+        snprintf(c->codec, sizeof c->codec, "lp=%s", ENCODER_THREADS);
+        ADD(c, "-preset", c->preset, "-crf", c->crf, "-svtav1-params", c->codec);
     } else {
         ADD(c, "-profile:v", "hq", "-vendor", "apl0", "-threads", ENCODER_THREADS);
     }

@@ -135,7 +135,7 @@ static void points_have_the_disparity_of_their_depth_and_none_vertically(void **
     for (int i = 0; i < 27; i++) {
         const double z = i / 9 == 0 ? 6 : i / 9 == 1 ? plan.frames[0].convergence : 10;
         const struct vec3 p = view_unproject(&camera, 80 + 60 * (i % 3 - 1), 60 + 50 * (i / 3 % 3 - 1), z);
-        double ul, vl, ur, vr;
+        double ul = 0, vl = 0, ur = 0, vr = 0;
         assert_true(view_project(l, p, &ul, &vl) > 0 && view_project(r, p, &ur, &vr) > 0);
         assert_true(fabs(vr - vl) < 1e-9);
         assert_true(fabs(ur - ul - eyes_disparity(&plan, &camera, 0, z)) < 1e-9);
