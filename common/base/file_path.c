@@ -19,7 +19,7 @@ const char *path_file_name(const char *path)
     return slash ? slash + 1 : path;
 }
 
-/* What stat() cannot look at for another reason than that it is missing counts as there: who opens it is told why. */
+/* If stat() fails although the path may exist, it counts as existing: opening it then gives the reason. */
 static bool is_there(const char *path, mode_t kind)
 {
     struct stat info;

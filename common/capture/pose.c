@@ -33,7 +33,8 @@ enum status pose_turn_from_axes(struct mat3 *cam_from_world, const struct vec3 a
 {
     if (!is_turned(axes))
         return err_set(err, ST_DATA,
-                       "%s: found a pose that is no rotation, wanted three perpendicular axes of one length.", where);
+                       "%s: found a pose that is not a rotation, wanted three perpendicular axes of one length.",
+                       where);
     for (int i = 0; i < 3; i++) {
         const struct vec3 axis = vec3_normalize(axes[i]);
         cam_from_world->m[i][0] = axis.x;

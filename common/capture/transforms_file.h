@@ -44,7 +44,7 @@ enum status transforms_file_number(const struct transforms_frame *f, const char 
 bool transforms_file_is_panorama(const struct transforms_frame *f);
 
 /* width, height: of the picture where the file does not say; 0: unknown. *known: false if the size is unknown, and the
- * lens with it. ST_DATA: a model that is none of OpenCV's, no focal length, a value that is no number. */
+ * lens with it. ST_DATA: a model that OpenCV does not have, a missing focal length, a value that is not a number. */
 enum status transforms_file_lens(struct given_lens *lens, bool *known, const struct transforms_frame *f, double width,
                                  double height, struct err *err);
 /* axes[k] is the direction of the camera's x (right), y (down), z (forward) axis in the world. ST_DATA: missing. */

@@ -17,7 +17,7 @@
  *
  * Errors. The errors of indirect light differ from face to face, so the standard errors are a jackknife over faces,
  * made wider for so few of them (the quantile of Student's t distribution over that of the normal one), and never
- * below that of independent squares. A lamp that one face alone tells of is not known.
+ * below that of independent squares. A lamp that only one face shows is unknown.
  *
  * Limits. A face of which one part is of another material, just where a lamp shines, is believed; the other faces and
  * the jackknife say so. Ceilings above lamps tell nothing. */
@@ -190,7 +190,7 @@ static void add_face(struct fit *f, const struct face *face)
     }
 }
 
-/* Solves for a step, without the face `left_out`; the largest of its elements, or -1: there is no solution. `normal`
+/* Solves for a step, without the face `left_out`. Returns its largest element, or -1 if it has no solution. `normal`
  * then holds the factor. */
 static double advance(struct fit *f, int left_out)
 {
@@ -272,7 +272,7 @@ static void jackknife(struct fit *f, const double *best, double *sums, double *s
             const double off = f->x[a] - best[a];
             sums[a] += off;
             squares[a] += off * off;
-            if (!rests || formal_error(f, a) > MOST_ERROR) squares[a] = INFINITY; /* one face alone tells of it */
+            if (!rests || formal_error(f, a) > MOST_ERROR) squares[a] = INFINITY; /* only one face shows it */
         }
     }
     const double wider = few_faces(f->face_count) * few_faces(f->face_count);

@@ -129,7 +129,7 @@ static void what_cannot_be_a_film_is_named(void **state)
          "found a panorama"},
         {"{\"fl_x\": 60, \"w\": 64, \"h\": 48, \"frames\": [{\"transform_matrix\": "
          "[[1,0,0,0],[0,2,0,0],[0,0,1,0],[0,0,0,1]]}]}",
-         "found a pose that is no rotation"},
+         "found a pose that is not a rotation"},
         {"{\"fl_x\": 60, \"w\": 64, \"h\": 48, \"frames\": [{\"transform_matrix\": "
          "[[1,0,0,0],[0,1,0,0],[0,0,1,-50],[0,0,0,1]]}, {\"transform_matrix\": "
          "[[1,0,0,0],[0,1,0,0],[0,0,1,-50],[0,0,0,1]]}]}",

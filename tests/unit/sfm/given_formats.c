@@ -117,7 +117,7 @@ static void what_is_wrong_with_transforms_is_named(void **state)
         {"{\"fl_x\": 500, \"frames\": [{\"file_path\": \"a.jpg\"}]}", "(\"a.jpg\"): its transform_matrix is missing"},
         {"{\"fl_x\": 500, \"frames\": [{\"file_path\": \"a.jpg\", \"transform_matrix\": "
          "[[1,0,0,0],[0,1,0,0],[0,0,-1,0],[0,0,0,1]]}]}",
-         "a pose that is no rotation"},
+         "a pose that is not a rotation"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         struct sfm_model m;
@@ -246,7 +246,7 @@ static void what_is_wrong_with_xml_is_named(void **state)
         {"frame", "<f>500</f>",
          "<components><component id=\"0\"><transform><rotation>1 0 0 0 1 0 0 0 -1</rotation></transform></component>"
          "</components>",
-         "cameras.xml:12: camera \"a.jpg\": found a pose that is no rotation"},
+         "cameras.xml:12: camera \"a.jpg\": found a pose that is not a rotation"},
     };
     struct sfm_model m;
     struct err err;
