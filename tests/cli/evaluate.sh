@@ -299,6 +299,7 @@ relit_pictures_are_compared_where_light_changes()
     within edited.dark.relit_psnr 80 100
     within edited.dark.unlit_psnr 5 40
     within edited.dark.relit_gain 40 95
+    awk -F'\t' '{ v[$1] = $2 } END { p = "edited.dark."; exit !(v[p "relit_limit_psnr"] > v[p "unlit_psnr"] && v[p "relit_limit_psnr"] <= 100) }' metrics.tsv || { cat metrics.tsv; fail "the true change of light gains nothing"; }
     within edited.dark.relit_pixels 20 95
     within edited.dark.relit_psnr_model 80 100
     within edited.dark.relit_revealed_psnr 60 100

@@ -23,7 +23,7 @@ enum { MIN_PIXELS = 200 }; /* of a picture, for values of its own */
 static const double MAX_HALF = 65504;
 
 struct relit_sums { /* by part of the picture */
-    struct encoded_error relit[PICTURE_PARTS], unlit[PICTURE_PARTS], revealed[PICTURE_PARTS];
+    struct encoded_error relit[PICTURE_PARTS], unlit[PICTURE_PARTS], limit[PICTURE_PARTS], revealed[PICTURE_PARTS];
     struct quantiles ratios[PICTURE_PARTS];
     uint64_t pixels[PICTURE_PARTS], all; /* that are compared; of the pictures */
 };
@@ -151,6 +151,32 @@ static void add_picture(struct relit_sums *s, struct relit_truth *t, const struc
     }
 }
 
+/* What the picture in the old light would show if its change of light were the true one. */
+static void add_limit(struct relit_sums *s, struct relit_truth *t, const struct render *unlit,
+                      const struct image *truth, const float *best, double white)
+{
+    const struct radiance_pixels p = {best, truth->data, t->mask, t->count, unlit->scale, white};
+    for (int k = 0; k < PICTURE_PARTS; k++) {
+        choose(t, t->kept, k);
+        relit_encoded_error_add(&s->limit[k], &p);
+    }
+}
+
+static enum status add_limits(struct relit_sums *own, struct relit_job *job, struct relit_truth *t,
+                              const struct render *unlit, const struct image *truth, struct err *err)
+{
+    if (!t->is_irradiance) return ST_OK;
+    const size_t size = 3 * t->count * sizeof(float);
+    float *best = malloc(size);
+    if (!best) return err_nomem(err, "a picture in the true light", size);
+    memcpy(best, unlit->picture.rgb.data, size);
+    relit_change_apply(best, t->before, t->after, t->kept, t->count);
+    add_limit(own, t, unlit, truth, best, job->e->white);
+    add_limit(&job->sums, t, unlit, truth, best, job->e->white);
+    free(best);
+    return ST_OK;
+}
+
 /* The quotients beside a relit picture, NAME-ratio.exr, if there are any. */
 static enum status add_quotients(struct relit_sums *own, struct relit_job *job, struct relit_truth *t,
                                  const struct render *r, struct err *err)
@@ -186,13 +212,15 @@ static enum status add_metric(struct relit_job *job, const char *view, const cha
 static enum status add_part(struct relit_job *job, const char *view, const struct relit_sums *s, int k, uint64_t least,
                             struct err *err)
 {
-    double relit, unlit, revealed;
+    double relit, unlit, limit, revealed;
     if (s->pixels[k] >= least && relit_encoded_error_psnr(&s->relit[k], &relit) &&
         relit_encoded_error_psnr(&s->unlit[k], &unlit)) {
         if (!add_metric(job, view, "relit_psnr", k, relit, err) &&
             !add_metric(job, view, "unlit_psnr", k, unlit, err) &&
             !add_metric(job, view, "relit_gain", k, relit - unlit, err))
             add_metric(job, view, "relit_pixels", k, 100 * (double)s->pixels[k] / (double)s->all, err);
+        if (!err->status && relit_encoded_error_psnr(&s->limit[k], &limit))
+            add_metric(job, view, "relit_limit_psnr", k, limit, err);
         if (!err->status && s->ratios[k].count)
             add_metric(job, view, "relit_ratio_error50", k, 100 * quantiles_get(&s->ratios[k], 0.5), err);
     }
@@ -243,7 +271,7 @@ static enum status measure_pair(struct relit_job *job, struct relit_truth *t, st
     if (!err->status) {
         add_picture(&own, t, r, u, &truth, job->e->white);
         add_picture(&job->sums, t, r, u, &truth, job->e->white);
-        add_quotients(&own, job, t, r, err);
+        if (!add_limits(&own, job, t, u, &truth, err)) add_quotients(&own, job, t, r, err);
     }
     if (!err->status && !add_metrics(job, r->name, &own, MIN_PIXELS, err)) write_truth(job, r, &truth, err);
     linear_picture_release(&r->picture);

@@ -34,6 +34,16 @@ bool relit_encoded_error_psnr(const struct encoded_error *e, double *psnr)
     return true;
 }
 
+void relit_change_apply(float *picture, const float *before, const float *after, const uint8_t *mask, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        if (!mask[i]) continue;
+        const float *a = before + 3 * i, *b = after + 3 * i;
+        const double all = luminance_precise(b) / luminance_precise(a);
+        for (size_t c = 0; c < 3; c++) picture[3 * i + c] *= (float)(a[c] > 0 ? (double)b[c] / (double)a[c] : all);
+    }
+}
+
 void relit_quotient_errors_add(struct quantiles *errors, const float *quotient, const float *before, const float *after,
                                const uint8_t *mask, size_t count)
 {

@@ -21,6 +21,10 @@ void relit_encoded_error_add(struct encoded_error *e, const struct radiance_pixe
 /* At most 100 dB. False: no sample. */
 bool relit_encoded_error_psnr(const struct encoded_error *e, double *psnr);
 
+/* Multiplies what a picture (R G B) shows in the old light by the true change of light, after / before by channel; a
+ * channel whose light is 0 before takes the quotient of luminances. Only pixels whose mask is not 0. */
+void relit_change_apply(float *picture, const float *before, const float *after, const uint8_t *mask, size_t count);
+
 /* Adds |q - q_true| / q_true of the pixels whose mask is not 0: q = Y(quotient x before) / Y(before) for a quotient of
  * each channel, q_true = Y(after) / Y(before); before and after are true irradiance, R G B. */
 void relit_quotient_errors_add(struct quantiles *errors, const float *quotient, const float *before, const float *after,

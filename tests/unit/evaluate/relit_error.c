@@ -74,6 +74,21 @@ static void equal_pictures_have_100_db(void **state)
     assert_true(fabs(psnr - 100) < 1e-9);
 }
 
+static void the_true_change_is_applied_by_channel(void **state)
+{
+    float before[3 * N], after[3 * N], picture[3 * N];
+    const uint8_t mask[N] = {1, 1, 0, 1, 1, 1};
+    (void)state;
+    fill(before, (const double[]){1, 2, 1, 1, 1, 1});
+    fill(after, (const double[]){3, 1, 3, 1, 1, 1});
+    fill(picture, (const double[]){0.5, 0.5, 0.5, 0.5, 0.5, 0.5});
+    after[1] = 6;
+    before[3 * 3 + 2] = 0; /* blue light that is new: the quotient of luminances, 1 / (1 - 0.0722) */
+    relit_change_apply(picture, before, after, mask, N);
+    const float wanted[] = {1.5F, 3, 1.5F, 0.25F, 0.25F, 0.25F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F, 0.5F / (1 - 0.0722F)};
+    for (int i = 0; i < 12; i++) assert_true(fabsf(picture[i] - wanted[i]) < 1e-4F);
+}
+
 static void a_quotient_is_judged_by_the_luminance_that_it_makes(void **state)
 {
     float before[3 * N], after[3 * N], quotient[3 * N];
@@ -100,6 +115,7 @@ int main(void)
         cmocka_unit_test(light_changes_by_more_than_a_twentieth),
         cmocka_unit_test(psnr_is_that_of_srgb_over_all_that_was_added),
         cmocka_unit_test(equal_pictures_have_100_db),
+        cmocka_unit_test(the_true_change_is_applied_by_channel),
         cmocka_unit_test(a_quotient_is_judged_by_the_luminance_that_it_makes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
