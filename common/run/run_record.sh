@@ -13,7 +13,11 @@ record_run() # GOAL
     printf '%s\n' "goal $1" "folder $O" "jobs $jobs" "began $(date +%s)" >"$S/log/run.txt"
     rm -f "$S/log/run.tally"
 }
-record_step() { rm -f "$S/log/run.tally"; echo "step $* $(date +%s)" >>"$S/log/run.txt"; } # I N STAGE STEP
+record_step() # I N STAGE STEP
+{
+    [ ! -e "$S/log/run.tally" ] || rm -f "$S/log/run.tally"
+    printf 'step %s %(%s)T\n' "$*" -1 >>"$S/log/run.txt"
+}
 # begin_tally COUNT: run_stage.sh adds a line for each of so many pieces
 begin_tally()
 {

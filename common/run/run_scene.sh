@@ -46,15 +46,21 @@ items() { sed -nE 's|.*/run_stage.sh [a-z]+ [a-z_]+ ([^ ]+) .*|\1|p'; }
 # estimate fail makes the stage fail too, which then says why
 work_of() { ! is_function "estimate_$1" || { "estimate_$1" 2>/dev/null || true; } | sed -n 's/^estimate //p'; }
 # plan_of TARGET THREADS: the pieces of work that are stale, as lines of a plan
-plan_of() { print_graph write && execute -n -s T="$2" "$1" | common/run/plan_lines.sh "$O/graph"; }
+plan_of()
+{
+    local commands
+    print_graph write || return
+    commands=$(execute -n -s T="$2" "$1") || return
+    [[ $commands != *run_stage.sh* ]] || common/run/plan_lines.sh "$O/graph" <<<"$commands"
+}
 # farm STAGE TARGET [THREADS] [LINES]: the stale products of a per-view stage, here or on the cluster, where a task has THREADS
 # cores and LINES of the plan; otherwise VIEWS_PER_JOB, or what the stage's estimate says
 farm()
 {
     local plan=$work/$1.plan count wide threads
     plan_of "$2" "${3:-1}" >"$plan"
+    [ -s "$plan" ] || return 0
     count=$(wc -l <"$plan")
-    [ "$count" -gt 0 ] || return 0
     if [ "$jobs" = slurm ]; then
         # shellcheck disable=SC2046 # five numbers, or none
         REMODEL_BIN=$bin common/run/slurm.sh "$1" "$plan" "$O/jobs/$1" "${3:-1}" "${4:-${VIEWS_PER_JOB-}}" $(cut -f2- "$plan" | tr '\t' ' ' | work_of "$1")
@@ -206,12 +212,13 @@ if [ "$dry" = n ]; then
 fi
 
 steps=$(print_graph steps "$goal")
+mapfile -t steps <<<"$steps"
 n=0
 while read -r stage run step <&3; do
-    record_step $((++n)) "$(wc -l <<<"$steps")" "$stage" "$step"
+    record_step $((++n)) "${#steps[@]}" "$stage" "$step"
     if is_function "run_$step"; then "run_$step"
     elif [ "$run" = farm ]; then farm "$stage" "$step"
     elif [ "$run" = wide ]; then farm_frames "$stage" "$step"
     else one "$step"; fi
-done 3<<<"$steps"
+done 3< <(printf '%s\n' "${steps[@]}")
 hooks end

@@ -8,10 +8,10 @@ set -uo pipefail
 mode=$1 stage=$2 item=$3 folder=$4; shift 4
 # threads with nothing to do sleep, not spin: on a machine with other work spinning takes the core from who has work
 export OMP_WAIT_POLICY=${OMP_WAIT_POLICY-passive}
-mkdir -p "$folder/log"
+[ -d "$folder/log" ] || mkdir -p "$folder/log"
 log=$folder/log/$stage.$item.log
 failed=$folder/log/$stage.$item.failed # for `make status`
-rm -f "$failed"
+[ ! -e "$failed" ] || rm -f "$failed"
 if [ "$mode" = live ]; then
     "$@" 2>&1 >/dev/null | tee "$log" >&2
     rc=${PIPESTATUS[0]}
@@ -28,11 +28,14 @@ if [ "$rc" -ne 0 ]; then
     exit "$rc"
 fi
 [ "$mode" = quiet ] || exit 0
-grep -a '^[a-z_]*: warning: ' "$log" >&2 || true
+# by the shell alone where it can: a house has thousands of pieces, and each program that starts costs milliseconds
+{ words=$(<"$log"); } 2>/dev/null
+[[ $words != *': warning: '* ]] || grep -a '^[a-z_]*: warning: ' "$log" >&2 || true
 if [ -n "${REMODEL_TALLY-}" ] && [ -e "$REMODEL_TALLY" ]; then
     echo "$item" >>"$REMODEL_TALLY"
-    { read -r began count; done=$(wc -l); } <"$REMODEL_TALLY"
-    now=$(date +%s)
+    { read -r began count; mapfile -t made; } <"$REMODEL_TALLY"
+    done=${#made[@]}
+    printf -v now '%(%s)T' -1
     left=$(((now - began) * (count - done) / (done > 0 ? done : 1)))
     printf '%s %d/%d %s, about %d:%02d left\n' "$stage" "$done" "$count" "$item" $((left / 60)) $((left % 60)) >&2
 else

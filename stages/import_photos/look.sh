@@ -20,9 +20,10 @@ mode=silent
 common/run/run_stage.sh "$mode" import_photos all "$folder" "$bin/import_photos" --config "$folder/slice/import_photos.cfg" \
     "${photos[@]}" --scene "$scene" "${exclude[@]}" "${split[@]}" "${single[@]}" --depth "$folder/photo_depth" --frames "$folder/frames" --out "$folder/photos"
 [ "$mode" = live ] || grep -h warning: "$folder/log/import_photos.all.log" >&2 || true
-for r in "$folder"/photos/*.txt; do
-    [[ ${r##*/} = list.txt || ${r##*/} = brackets.txt ]] || { printf '%s ' "${r##*/}"; grep -E '^(size|orientation) ' "$r" | tr '\n' ' '; echo; }
-done | keep "$folder/stamp/photo_sizes.txt"
+find "$folder/photos" -maxdepth 1 -name '*.txt' ! -name list.txt ! -name brackets.txt -print0 | LC_ALL=C sort -z | xargs -0 awk '
+    FNR == 1 { name = FILENAME; sub(/.*\//, "", name); printf "%s%s ", (NR > 1 ? "\n" : ""), name }
+    /^(size|orientation) / { printf "%s ", $0 }
+    END { if (NR) print "" }' | keep "$folder/stamp/photo_sizes.txt"
 
 # a photo's mask; a view of several exposures has the masks of all of them
 if [ -d "$scene/masks" ]; then
