@@ -19,6 +19,7 @@ enum light_source {
     LIGHT_SKY_GUESSED, /* outdoors, beyond the field of all of them */
     LIGHT_LAMP,        /* a lamp of lights.txt */
     LIGHT_MATERIAL,    /* a fitted material, by one nested gather */
+    LIGHT_OBJECT,      /* furniture, and objects that an edit puts into the model */
     LIGHT_SOURCES
 };
 

@@ -24,9 +24,6 @@ struct light_record {
     int example_count;
 };
 
-/* The word of a source in the file: none, texture, synthesised, ... */
-const char *light_source_word(enum light_source source);
-
 enum status light_record_write(const struct light_record *r, const char *path, const struct provenance *prov,
                                struct err *err);
 /* ST_DATA with file and line: a damaged line, a number out of range. */

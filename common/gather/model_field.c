@@ -78,7 +78,7 @@ static void see_face(struct light_look *seen, const struct model_field *f, const
 static void see_surface(struct light_look *seen, const struct model_field *f, const struct ray_hit *hit)
 {
     const int k = (int)hit->id - f->model.mesh.face_count, back = !hit->front;
-    *seen = (struct light_look){f->surfaces->radiance[k][back], hit->t, LIGHT_MATERIAL,
+    *seen = (struct light_look){f->surfaces->radiance[k][back], hit->t, LIGHT_OBJECT,
                                 f->model.mesh.face_count + 2 * k + back};
 }
 

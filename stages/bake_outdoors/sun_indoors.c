@@ -11,7 +11,7 @@ static void see(struct light_look *seen, const struct sun_indoors *in, const str
     seen->distance = hit->t;
     if (extra >= 0) {
         seen->radiance = in->furniture->radiance[extra][!hit->front];
-        seen->source = LIGHT_MATERIAL;
+        seen->source = LIGHT_OBJECT;
     } else if (hit->front) {
         const struct field_texel texel =
             field_atlas_look(s->atlas, solid_face_id(&s->model->mesh, (int)hit->id), hit->point);

@@ -67,9 +67,9 @@ static void report(const struct irradiance *results, const struct gather_point *
     log_note("%zu points, %.3g rays each; relative error by the gather's own estimate %.2g %% (median), %.2g %% (most)",
              n, rays / (double)n, 100 * errors[n / 2], 100 * errors[n - 1]);
     log_note("mean shares of the light: %.1f %% photographed texels, %.1f %% synthesised texels, %.1f %% outdoors, "
-             "%.1f %% outdoors beyond all pictures, %.1f %% lamps",
+             "%.1f %% outdoors beyond all pictures, %.1f %% lamps, %.1f %% furniture and objects",
              100 * from[LIGHT_TEXTURE] / lit, 100 * from[LIGHT_SYNTHESISED] / lit, 100 * from[LIGHT_SKY] / lit,
-             100 * from[LIGHT_SKY_GUESSED] / lit, 100 * from[LIGHT_LAMP] / lit);
+             100 * from[LIGHT_SKY_GUESSED] / lit, 100 * from[LIGHT_LAMP] / lit, 100 * from[LIGHT_OBJECT] / lit);
     if (from[LIGHT_MATERIAL] > 0) log_note("mean share of glossy materials: %.1f %%", 100 * from[LIGHT_MATERIAL] / lit);
     if (dark) log_note("%zu points are in the dark", dark);
 }

@@ -31,7 +31,7 @@ static enum status write_parts(const struct gather_job *j, const char *name, con
     struct outfile f = {0};
     open_list(&f, j, name, PRODUCT_IRRADIANCE_PARTS,
               "# standard error r g b, rays, nearest distance and 1 / (harmonic mean distance) in model "
-              "units, shares of the light: none texture synthesised sky sky-guessed lamp material\n",
+              "units, shares of the light: none texture synthesised sky sky-guessed lamp material object\n",
               err);
     for (int i = 0; !err->status && i < count; i++) {
         const double nearest = isfinite(e[i].nearest) ? e[i].nearest : 0;

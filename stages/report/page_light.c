@@ -301,6 +301,7 @@ static void put_shares(FILE *to, const struct light_record *r)
     fputs("<table class=\"shares\"><caption>Where this light comes from</caption><tbody>\n", to);
     put_share(to, r->from[LIGHT_TEXTURE], "walls, floors and ceilings that photographs show", true);
     put_share(to, r->from[LIGHT_MATERIAL], "surfaces whose material was fitted", true);
+    put_share(to, r->from[LIGHT_OBJECT], "furniture and objects", true);
     put_share(to, r->from[LIGHT_LAMP], "lamps", true);
     put_share(to, r->from[LIGHT_SKY], "the outdoors, as photographed", true);
     put_share(to, r->from[LIGHT_SYNTHESISED], "surfaces that no photograph shows: filled in", false);

@@ -73,14 +73,14 @@ static void a_record_is_read_as_it_was_written(void **state)
 static void a_damaged_record_is_refused(void **state)
 {
     static const char *const cases[][2] = {
-        {"remodel-light-record 2\n", "version"},
-        {"remodel-light-record 1\npoints -1 dark 0\n", ":2:"},
-        {"remodel-light-record 1\npoints 3 dark 4\n", ":2:"},
-        {"remodel-light-record 1\nerror 1 2\n", ":2:"},
-        {"remodel-light-record 1\nshares none 2\n", "from 0 to"},
-        {"remodel-light-record 1\nhemicube 2 0 0 0 0 0 1 1 1 1 0\n", ":2:"},
-        {"remodel-light-record 1\nlevel 1 2 3\n", ":2:"},
-        {"remodel-light-record 1\nglow 1\n", "glow"},
+        {"remodel-light-record 9\n", "version"},
+        {"remodel-light-record 2\npoints -1 dark 0\n", ":2:"},
+        {"remodel-light-record 2\npoints 3 dark 4\n", ":2:"},
+        {"remodel-light-record 2\nerror 1 2\n", ":2:"},
+        {"remodel-light-record 2\nshares none 2\n", "from 0 to"},
+        {"remodel-light-record 2\nhemicube 2 0 0 0 0 0 1 1 1 1 0\n", ":2:"},
+        {"remodel-light-record 2\nlevel 1 2 3\n", ":2:"},
+        {"remodel-light-record 2\nglow 1\n", "glow"},
     };
     (void)state;
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

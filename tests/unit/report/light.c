@@ -19,8 +19,8 @@ static const char FIT[] =
 static const char MATERIALS[] = "remodel-materials 1\nmaterial oak ward 0.2 0.1 0.05 0.03 0.1\n"
                                 "range oak 0.19 0.21 0.09 0.11 0.04 0.06 0.02 0.04 0.05 -\n"
                                 "evidence oak 400 100 4 1.2 2 -1 1.1 a gloss <explains> more\n";
-static const char RECORD[] = "remodel-light-record 1\npoints 40 dark 1\nerror 0.01 0.02 0.05\n"
-                             "shares none 0 texture 0.5 synthesised 0.2 sky 0 sky-guessed 0.1 lamp 0.2 material 0\n";
+static const char RECORD[] = "remodel-light-record 2\npoints 40 dark 1\nerror 0.01 0.02 0.05\n"
+                             "shares none 0 texture 0.5 synthesised 0.2 sky 0 sky-guessed 0.1 lamp 0.15 material 0 object 0.05\n";
 
 static char *page_of_scratch(void) { return scratch_page("scene", "fit_lights"); }
 
@@ -134,7 +134,8 @@ static void irradiance_has_shares_errors_and_hemicubes(void **state)
     page_has(page, "<h4>View v</h4>");
     page_has(page, "<h4>Chosen points</h4>");
     page_has(page, "<span>0.5</span><span>2</span><span>8</span>");
-    page_has(page, "<th scope=\"row\">lamps</th><td class=\"n\">20.0 %<span class=\"bar\">");
+    page_has(page, "<th scope=\"row\">lamps</th><td class=\"n\">15.0 %<span class=\"bar\">");
+    page_has(page, "<th scope=\"row\">furniture and objects</th><td class=\"n\">5.0 %<span class=\"bar\">");
     page_has(page, "guessed</th><td class=\"n\">10.0 %<span class=\"bar peak\">");
     page_lacks(page, "places without any picture");
     page_has(page, "half of them are off by less than 1 %");
