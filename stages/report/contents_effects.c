@@ -10,6 +10,7 @@
 #include "common/base/array.h"
 #include "common/base/scan.h"
 #include "stages/report/film_flicker.h"
+#include "stages/report/passing.h"
 
 enum { POSTER_HEIGHT = 540 };
 
@@ -112,6 +113,7 @@ static enum status read_kinds(struct effect_card *e, const char *folder, const c
     char path[PATH_SIZE];
     snprintf(path, sizeof path, "%s/%s", folder, film);
     const int count = scandir(path, &names, NULL, alphasort);
+    if (count < 0 && errno != ENOENT && errno != ENOTDIR) err_errno(err, "list", path);
     for (int i = 0; i < count; i++) {
         if (!err->status) add_kind(e, folder, film, names[i]->d_name, err);
         free(names[i]);
@@ -206,7 +208,9 @@ static enum status measure_tour(struct flicker_card *f, const char *folder, cons
         snprintf(path, sizeof path, "%s/remodel/%s/tour", folder, change);
     else
         snprintf(path, sizeof path, "%s/%s", folder, film);
-    if (!camera_path_read(&walk, path, NULL, &why))
+    if (camera_path_read(&walk, path, NULL, &why))
+        passing_refuse(why.text, err);
+    else
         film_flicker_measure(&f->middle, &f->high, &f->known, &walk, folder, film, err);
     camera_path_release(&walk);
     return err->status;

@@ -10,6 +10,7 @@
 #include "common/image/exr.h"
 #include "common/image/luminance.h"
 #include "common/product/product.h"
+#include "stages/report/passing.h"
 
 enum { PAIRS = 12, STEP = 3 };
 
@@ -102,6 +103,7 @@ static enum status read_frame(struct flicker_picture *p, bool *known, const stru
     char path[FILE_PATH];
     *known = false;
     if (!product_path_below(path, folder, PRODUCT_FRAME, &key, &why)) exr_read(&im, path, names, 4, &why);
+    if (why.status) passing_refuse(why.text, err);
     bool whole = !why.status && im.width == camera->width && im.height == camera->height;
     for (int k = 0; whole && k < 4; k++) whole = (planes[k] = exr_find(&im, names[k])) && planes[k]->f;
     if (whole && !(p->luminance = malloc(2 * pixels * sizeof *p->luminance)))

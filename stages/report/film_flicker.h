@@ -28,7 +28,8 @@ double film_flicker_quantile(struct flicker_values *v, double fraction);
 void film_flicker_release(struct flicker_values *v);
 
 /* Percentiles 50 and 95 over 12 pairs of neighbouring frames of O/FILM/frames, spread over the film. *known: false if a
- * frame is missing, has no depth, or fits no camera of the path. Only ST_NOMEM is an error. */
+ * frame is missing, has no depth, or fits no camera of the path. ST_NOMEM; ST_IO: a trouble that passes
+ * (passing.h). */
 enum status film_flicker_measure(double *middle, double *high, bool *known, const struct camera_path *path,
                                  const char *folder, const char *film, struct err *err);
 

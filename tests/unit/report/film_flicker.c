@@ -1,8 +1,11 @@
 /* film_flicker.c - surfaces that keep their light do not flicker, however the camera moves; changes are measured. */
 #include "stages/report/film_flicker.h"
 
+#include <errno.h>
 #include <math.h>
+#include <sys/resource.h>
 
+#include "common/base/outfile.h"
 #include "tests/unit/scratch.h"
 
 enum { W = 64, H = 48 };
@@ -89,6 +92,28 @@ static void films_without_frames_have_no_flicker(void **state)
     camera_path_release(&path);
 }
 
+/* A frame that cannot be opened for a moment is not a film without flicker. */
+static void a_trouble_that_passes_is_an_error(void **state)
+{
+    (void)state;
+    struct camera_path path = {0};
+    struct rlimit was, none;
+    struct err err = ERR_INIT;
+    double middle, high;
+    bool known = true;
+    assert_ok(camera_path_init(&path, "test", 25, 5, &err), err);
+    assert_ok(outfile_make_folders(scratch_path("parallax/test/frames"), &err), err);
+    scratch_write("parallax/test/frames/0001.exr", "a frame");
+    assert_int_equal(getrlimit(RLIMIT_NOFILE, &was), 0);
+    none = (struct rlimit){.rlim_cur = 0, .rlim_max = was.rlim_max};
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &none), 0);
+    film_flicker_measure(&middle, &high, &known, &path, scratch, "parallax/test", &err);
+    assert_int_equal(setrlimit(RLIMIT_NOFILE, &was), 0);
+    assert_int_equal(err.status, ST_IO);
+    assert_non_null(strstr(err.text, strerror(EMFILE)));
+    camera_path_release(&path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -96,6 +121,7 @@ int main(void)
         cmocka_unit_test(a_change_of_a_tenth_is_ten_per_cent),
         cmocka_unit_test(hidden_and_unknown_places_do_not_count),
         cmocka_unit_test(films_without_frames_have_no_flicker),
+        cmocka_unit_test(a_trouble_that_passes_is_an_error),
     };
     return cmocka_run_group_tests(tests, scratch_make, scratch_remove);
 }
