@@ -78,8 +78,8 @@ static struct places places_of(const struct edit_lamps *l, int lamp, const struc
     return s;
 }
 
-/* Irradiance from place k in the photographs' unit, without the lamp's colour, and the unit direction towards it; 0
- * where something hides it. A lamp may lie in the surface that it hangs from. */
+/* Irradiance from place k in the photographs' unit, without the lamp's colour, and the unit direction from the point
+ * towards it; 0 where something hides it. A lamp may lie in the surface that it hangs from. */
 static double light_of_place(struct vec3 *direction, struct places *s, int k)
 {
     double u[4] = {0.5, 0.5, 0, 0};
@@ -89,8 +89,8 @@ static double light_of_place(struct vec3 *direction, struct places *s, int k)
     const double lux = planned_lamp_illuminance(s->lamp, place, s->point.at, s->point.normal, s->of->metre);
     const double distance = vec3_length(to), reach = distance - s->field->reach;
     if (!(lux > 0) || !(distance > 0)) return 0;
-    *direction = vec3_scale(to, 1 / distance);
-    if (reach > 0 && ray_scene_blocked(&s->field->model.rays, s->from, *direction, reach)) return 0;
+    if (reach > 0 && ray_scene_blocked(&s->field->model.rays, s->from, vec3_scale(to, 1 / distance), reach)) return 0;
+    *direction = vec3_normalize(vec3_sub(place, s->point.at));
     return lux / s->count / s->of->scale;
 }
 

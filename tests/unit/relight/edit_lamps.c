@@ -142,6 +142,31 @@ static void walls_throw_shadows_in_the_light_of_a_new_lamp(void **state)
     light_change_release(&c);
 }
 
+/* Rays begin a little above a surface, where a lamp that lies in it, or a little above it, is seen along it. */
+static void a_lamp_along_a_glossy_floor_gives_a_finite_highlight(void **state)
+{
+    static const double heights[] = {0, 0.5, 0.999, 1, 1.000001, 1.001, 1.1};
+    const struct brdf gloss = {BRDF_PHONG, {0, 0, 0}, 1, 10, 1};
+    (void)state;
+    for (size_t i = 0; i < sizeof heights / sizeof *heights; i++) {
+        struct texture_planned lamp = lamp_at(-1, 0, -2, "ball.ies");
+        struct edit e = edit_with(&lamp);
+        struct light_change c;
+        scratch_write("ball.ies", "IESNA91\nTILT=NONE\n1 -1 1 2 1 1 2 0 0 0\n1 1 0\n0 180\n0\n100 100\n");
+        edit_read(&c, &e);
+        const double epsilon = c.after.model.rays.epsilon;
+        struct planned_lamp *l = &c.lamps.planned.list[0];
+        const struct gather_point p = {{0, 0, -2}, {0, 0, 1}};
+        const struct vec3 view = vec3_normalize(vec3_make(1, 0, 0.01));
+        l->at.z = -2 + heights[i] * epsilon;
+        const double light = edit_lamps_light(&c.lamps, -1, &c.after, p, 1).g;
+        const double shown = edit_lamps_gloss(&c.lamps, &c.after, p, &gloss, view, 1).g;
+        assert_true(light >= 0 && light <= 1.2 * 100 / SCALE * epsilon);
+        assert_true(shown >= 0 && shown <= 1.01 * gloss.ks * 100 / SCALE);
+        light_change_release(&c);
+    }
+}
+
 /* Phong's lobe in the mirror's direction: k_s times the light over the cosine. */
 static void a_glossy_floor_reflects_the_lamp(void **state)
 {
@@ -223,6 +248,7 @@ int main(void)
         cmocka_unit_test(paint_under_a_new_lamp_has_its_albedo_of_both_lights_also_in_films),
         cmocka_unit_test(walls_throw_shadows_in_the_light_of_a_new_lamp),
         cmocka_unit_test(a_glossy_floor_reflects_the_lamp),
+        cmocka_unit_test(a_lamp_along_a_glossy_floor_gives_a_finite_highlight),
         cmocka_unit_test(a_luminous_opening_is_seen),
         cmocka_unit_test(lamps_of_an_unknown_scale_do_not_shine),
         cmocka_unit_test(a_damaged_file_is_named),
