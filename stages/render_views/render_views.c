@@ -113,6 +113,8 @@ static enum status render(struct render_job *job, struct provenance *prov, struc
         return err_set(err, ST_USAGE, "--picture %s: wanted flat or half_sphere.", job->picture);
     if (cameras && job->picture)
         return err_set(err, ST_USAGE, "--picture goes with --path: frames of single cameras are flat.");
+    if (job->crop && job->picture && !strcmp(job->picture, "half_sphere"))
+        return err_set(err, ST_USAGE, "--crop goes with flat pictures: of a half-sphere --scale alone is possible.");
     if (frame_part_read(&job->part, job->crop, job->scale, err)) return err->status;
     return cameras ? render_cameras(job, prov, err) : render_path(job, prov, err);
 }

@@ -27,6 +27,7 @@ invalid_arguments_exit_with_2_and_a_message()
     render 2 'picture of 0 x 0 pixels' --crop=0,0,4,4 --scale=0.01
     render 2 renderer --renderer=best
     render 2 renderer --set renderer=best
+    render 2 '--crop goes with flat pictures' --picture half_sphere --crop=0,0,8,8
     frames=0 render 2 'wanted frame numbers'
     frames=1:999 render 2 'wanted frame numbers'
     render 2 'more_views' --set more_views=99
