@@ -219,8 +219,8 @@ static void put_plan(const struct sheet *s, const struct plan *plan, const struc
         put_name(s, at[0], at[1], "name", readable(w->d), w->name);
     }
     for (int i = 0; i < plan->lamp_count; i++) {
-        const double *c = plan->lamps[i].scale;
-        if (plan->lamps[i].file && c[0] + c[1] + c[2] > 0) put_lamp(s, &plan->lamps[i]);
+        const double *by = plan->lamps[i].scale, *c = plan->lamps[i].placed.colour;
+        if (plan->lamps[i].file && by[0] * c[0] + by[1] * c[1] + by[2] * c[2] > 0) put_lamp(s, &plan->lamps[i]);
     }
     put_cameras(s, placer, PICTURE_FRUSTUM * unit);
 }

@@ -258,10 +258,11 @@ void texture_wishes_gloss(struct texture_face *to, const struct texture_models *
 /* ------------------------------------------------------------------------------------------------- lamps, zones,
  * things */
 
-/* One that was turned off again is left out. */
+/* One that was turned off again is left out; so is one whose factors leave nothing of its colour. */
 static enum status add_planned(struct texture_map *map, const struct plan_lamp *l, struct err *err)
 {
-    const double most = fmax(l->scale[0], fmax(l->scale[1], l->scale[2]));
+    double most = 0;
+    for (int k = 0; k < 3; k++) most = fmax(most, l->placed.colour[k] * l->scale[k]);
     if (!(most > 0)) return ST_OK;
     if (array_append(&map->planned, (size_t)map->planned_count, sizeof *map->planned, "lamps", err)) return err->status;
     struct texture_planned *to = &map->planned[map->planned_count++];

@@ -268,7 +268,8 @@ static void planned_lamps_reach_the_map(void **state)
     (void)state;
     make(&m, ROOM,
          "lamp a ies a.ies at 1 1 2 aim 0 1 -1 turn 30 colour 1 0.8 0.6\nlamp b ies a.ies at 2 1 2\nlamp b off\n"
-         "lamp c ies a.ies at 2 1 2\nlamp c scale 0.5 0.5 0.5\nlamp d off\n");
+         "lamp c ies a.ies at 2 1 2\nlamp c scale 0.5 0.5 0.5\nlamp d off\n"
+         "lamp red ies a.ies at 2 1 2 colour 1 0 0\nlamp red scale 0 1 1\n"); /* which leaves nothing of it */
     assert_ok(texture_map_write(&m.map, scratch_path("map.txt"), NULL, &err), err);
     assert_ok(texture_map_read(&map, scratch_path("map.txt"), NULL, &err), err);
     assert_int_equal(map.lamp_count, 1);
