@@ -47,13 +47,15 @@ static enum status read_vector(struct textfile *t, const char *what, double min,
     return ST_OK;
 }
 
-/* Sets the directions of a lamp that is turned about its axis. */
+/* Sets the directions of a lamp that is turned about its axis, whose upper end the turn is seen from. */
 static void set_frame(struct planned_lamp *l, struct vec3 down, double turn)
 {
-    struct vec3 along = vec3_make(cos(turn * DEGREE), sin(turn * DEGREE), 0);
+    struct vec3 first = vec3_make(1, 0, 0);
     l->down = vec3_normalize(down);
-    if (fabs(vec3_dot(along, l->down)) > 1 - 1e-9) along = vec3_make(0, 0, 1);
-    l->along = vec3_normalize(vec3_sub(along, vec3_scale(l->down, vec3_dot(along, l->down))));
+    if (fabs(vec3_dot(first, l->down)) > 1 - 1e-9) first = vec3_make(0, 0, 1);
+    first = vec3_normalize(vec3_sub(first, vec3_scale(l->down, vec3_dot(first, l->down))));
+    const struct vec3 axis = vec3_scale(l->down, l->down.z > 0 ? 1 : -1);
+    l->along = vec3_add(vec3_scale(first, cos(turn * DEGREE)), vec3_scale(vec3_cross(axis, first), sin(turn * DEGREE)));
 }
 
 static enum status read_colour(struct planned_lamp *l, struct textfile *t, struct err *err)

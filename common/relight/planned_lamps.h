@@ -4,7 +4,8 @@
  *
  * FILE.ies is beside states.txt. X Y Z is the middle of the luminous opening in the model's frame. `aim` is where the
  * vertical angle 0 of the file points, straight down without it. `turn` turns the luminaire about that axis,
- * counter-clockwise from above; without it the horizontal angle 0 lies along x. */
+ * counter-clockwise from above (of a level axis from behind); without it the horizontal angle 0 lies along x, or as
+ * near to x as the axis allows, and along z where the axis is x. */
 #ifndef REMODEL_PLANNED_LAMPS_H
 #define REMODEL_PLANNED_LAMPS_H
 

@@ -86,6 +86,31 @@ static void a_point_of_a_black_room_has_the_inverse_square(void **state)
     state_list_release(&l);
 }
 
+/* A lamp that is turned by an angle is turned by that angle, however it is aimed. */
+static void a_turn_is_about_the_axis(void **state)
+{
+    static const char *const aims[] = {"0 0 -1", "1 0 0", "-1 0 0", "0 1 0", "1 0 -1", "1 2 -0.5", "0 0 1", "1 1 3"};
+    (void)state;
+    scratch_write("spot.ies", SPOT);
+    for (size_t i = 0; i < sizeof aims / sizeof *aims; i++)
+        for (int turn = 0; turn <= 90; turn += 15) {
+            char text[300];
+            snprintf(text, sizeof text,
+                     "remodel-states 1\nlamp a ies spot.ies at 0 0 2 aim %s\n"
+                     "lamp b ies spot.ies at 0 0 2 aim %s turn %d\n",
+                     aims[i], aims[i], turn);
+            struct state_list l = states_of(text);
+            const struct planned_lamp *a = &l.planned.list[0], *b = &l.planned.list[1];
+            const struct vec3 swept = vec3_cross(a->along, b->along);
+            assert_near(vec3_length(b->along), 1, 1e-12);
+            assert_near(vec3_dot(b->along, b->down), 0, 1e-12);
+            assert_near(vec3_dot(a->along, b->along), cos(turn * DEGREE), 1e-12);
+            if (b->down.z < 0) assert_near(vec3_dot(swept, b->down), -sin(turn * DEGREE), 1e-12); /* from above */
+            if (b->down.z > 0) assert_near(vec3_dot(swept, b->down), sin(turn * DEGREE), 1e-12);
+            state_list_release(&l);
+        }
+}
+
 /* A panel of luminance 1000 / area close overhead: pi L times the form factor of a rectangle from below its middle. */
 static void a_panel_close_overhead_has_the_light_of_its_area(void **state)
 {
@@ -227,6 +252,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_point_of_a_black_room_has_the_inverse_square),
+        cmocka_unit_test(a_turn_is_about_the_axis),
         cmocka_unit_test(a_panel_close_overhead_has_the_light_of_its_area),
         cmocka_unit_test(a_closed_room_keeps_the_lumens_of_its_lamps),
         cmocka_unit_test(lux_do_not_depend_on_the_models_unit),
