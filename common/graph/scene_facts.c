@@ -101,11 +101,18 @@ static enum status read_edits(struct scene_facts *f, struct err *err)
     return err->status;
 }
 
+/* The words of a setting, each once. */
+static enum status read_words(struct name_list *list, const char *variable, struct err *err)
+{
+    if (!name_list_add_words(list, scene_setting(variable), err)) name_list_sort(list);
+    return err->status;
+}
+
 /* The folders of the eyes below a film's: flat ones, and half-spheres. */
 static enum status read_eyes(struct scene_facts *f, struct err *err)
 {
     static const char *const folders[] = {"/left", "/right", "/vr180/left", "/vr180/right"};
-    if (name_list_add_words(&f->eyes, scene_setting("EYES"), err)) return err->status;
+    if (read_words(&f->eyes, "EYES", err)) return err->status;
     const bool sphere = name_list_has(&f->eyes, "vr180"), flat = f->eyes.count > sphere;
     for (int i = 0; !err->status && i < 4; i++)
         if (i < 2 ? flat : sphere) name_list_add(&f->eye_folders, folders[i], strlen(folders[i]), err);
@@ -159,9 +166,8 @@ enum status scene_facts_read(struct scene_facts *f, const char *scene_folder, co
     }
     const struct product_key none = {0}, held = {.views = HELD_VIEWS}, references = {.records = "lri/photos"};
     (void)(name_list_add_words(&f->products, scene_setting("PRODUCTS"), err) ||
-           name_list_add_words(&f->films, scene_setting("FILMS"), err) ||
-           name_list_add_words(&f->formats, scene_setting("FILM"), err) || read_eyes(f, err) ||
-           read_list(&f->photos, shared, PRODUCT_PHOTOS_MK, &none, "PHOTO_IDS", err) ||
+           name_list_add_words(&f->films, scene_setting("FILMS"), err) || read_words(&f->formats, "FILM", err) ||
+           read_eyes(f, err) || read_list(&f->photos, shared, PRODUCT_PHOTOS_MK, &none, "PHOTO_IDS", err) ||
            read_list(&bracketed, shared, PRODUCT_PHOTOS_MK, &none, "BRACKETED", err) ||
            read_list(&f->references, shared, PRODUCT_PHOTOS_MK, &references, "PHOTO_IDS", err) ||
            read_list(&f->views, own, PRODUCT_VIEWS_MK, &none, "VIEWS", err) ||

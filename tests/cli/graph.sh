@@ -253,6 +253,19 @@ photos_in_other_light_are_placed_and_held_out()
     ! grep -q -- '--holdout-views' out/t/graph/sfm_import.mk || fail "it is held out without states.txt"
 }
 
+a_kind_of_film_that_is_named_twice_is_made_once()
+{
+    scene a b c
+    mkdir -p out/t/parallax/establishing_dolly
+    echo 'FRAMES := 0001 0002' >out/t/parallax/establishing_dolly/frames.mk
+    given FILM="pq hlg pq" EYES="vr180 vr180"
+    graph write
+    targets=$(sed -nE 's/^(out[^:]*video[^:]*):.*/\1/p' out/t/graph/encode_video.mk)
+    [ "$(wc -l <<<"$targets")" = "$(sort -u <<<"$targets" | wc -l)" ] || { echo "$targets"; fail "a rule is there twice"; }
+    grep -q 'video-vr180-hlg.mp4' <<<"$targets" || { echo "$targets"; fail "a kind is missing"; }
+    ! grep -q 'establishing_dolly/left' out/t/graph/plan_eyes.mk || fail "flat eyes are planned, too"
+}
+
 an_edit_needs_the_scripts_and_meshes_that_it_stands_on()
 {
     scene a b
@@ -397,7 +410,7 @@ for t in nothing_is_stale_when_all_is_made every_goal_is_known_before_the_views_
     a_deleted_product_is_remade_with_what_follows a_changed_photo_redoes_its_view_and_the_frame_that_all_depth_reads \
     a_changed_photo_redoes_its_features_and_the_cameras a_neighbour_that_is_a_view_no_more_redoes_the_depth_that_read_it a_parameter_redoes_its_stage_and_what_follows \
     a_changed_program_redoes_its_products a_given_model_with_points_needs_no_matches depth_that_a_model_names_is_given_unless_depth_is a_photo_is_read_once_for_its_views frames_come_in_chunks_and_wait_for_all_depth \
-    what_is_held_out_is_rectified_and_not_matched photos_in_other_light_are_placed_and_held_out an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
+    what_is_held_out_is_rectified_and_not_matched photos_in_other_light_are_placed_and_held_out a_kind_of_film_that_is_named_twice_is_made_once an_edit_needs_the_scripts_and_meshes_that_it_stands_on \
     a_rectangle_on_a_wall_of_any_name_asks_for_points given_cameras_see_the_unedited_model_too pictures_need_the_exposure_and_not_all_views \
     an_edit_that_went_changes_what_edits_reveal steps_come_in_order pieces_of_work_name_their_products \
     a_graph_that_is_the_same_is_not_rewritten wrong_settings_are_refused; do run "$t"; done
