@@ -126,6 +126,11 @@ static enum status find_weights(double *to, const struct making *m, const struct
                 "%s:%d: the state %s has a computed sky or a planned lamp, in which no photo was taken; take one with "
                 "lamps of lights.txt and the photographed sky alone.",
                 m->states->path, p->line, state->name);
+    if (!err->status && !w.has_relative)
+        err_set(err, ST_DATA,
+                "%s:%d: in the state %s no lamp and no window of the photographs shines, so the photo %s tells "
+                "nothing; take one in a state with some.",
+                m->states->path, p->line, state->name, p->name);
     for (int i = 0; !err->status && i <= g->rest; i++) to[i] = w.relative[i];
     for (int v = 0; !err->status && v < g->windows_count; v++) to[g->rest + 1 + v] = w.relative[g->sky + v];
     level_weights_release(&w);

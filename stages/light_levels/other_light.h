@@ -19,7 +19,7 @@ struct other_light_files {
 };
 
 /* The caller releases o in each case. ST_DATA: a photo that is not there, that shows nothing of the model, or whose
- * state has light that the photographs do not have; ST_USAGE: there are such lines, and no views. */
+ * state has light that the photographs do not have, or none of theirs; ST_USAGE: there are such lines, and no views. */
 enum status other_light_make(struct other_light *o, const struct other_light_files *files, const struct level_light *l,
                              const struct state_list *states, const struct model_axes *axes,
                              const struct levels_params *params, struct provenance *prov, struct err *err);

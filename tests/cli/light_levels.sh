@@ -189,6 +189,8 @@ photographs_in_states_say_how_bright_lamps_are()
     levels 1 'bad.txt:3: the state noon has a computed sky or a planned lamp' --states bad.txt --held-views $O/views --out made
     printf 'remodel-states 1\nphoto none-such in lamps\n' >bad.txt
     levels 1 'bad.txt:2: found the photo none-such' --states bad.txt --held-views $O/views --out made
+    printf 'remodel-states 1\nstate dark lamps off\nphoto photo_1 in dark\n' >bad.txt
+    levels 1 'bad.txt:3: in the state dark no lamp and no window of the photographs shines' --states bad.txt --held-views $O/views --out made
     levels 2 'need --held-views' --states bad.txt --out made
     printf 'remodel-states 1\nphoto photo_1 in evening\n' >bad.txt
     levels 1 'bad.txt:2: found "evening"' --states bad.txt --out made
