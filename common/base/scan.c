@@ -52,14 +52,24 @@ bool scan_double(const char *text, double *value)
     return true;
 }
 
+#define NAME_LETTERS "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-"
+
 bool scan_is_name(const char *word)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     const size_t length = strlen(word);
     double number;
-    return length && length <= SCAN_NAME && word[0] != '-' && strspn(word, letters) == length &&
+    return length && length <= SCAN_NAME && word[0] != '-' && strspn(word, NAME_LETTERS) == length &&
            !scan_double(word, &number);
 }
+
+bool scan_is_file_name(const char *word, const char *ending)
+{
+    const size_t length = strlen(word), tail = strlen(ending);
+    return length > tail && word[0] != '.' && strspn(word, NAME_LETTERS ".@+") == length &&
+           !strcmp(word + length - tail, ending);
+}
+
+bool scan_is_photo_name(const char *word) { return *word && !word[strspn(word, NAME_LETTERS "@")]; }
 
 /* Damerau-Levenshtein distance (optimal string alignment): insertions, deletions, replacements, swaps of neighbours.
  * Words longer than MAX_WORD count as far from everything. */

@@ -16,6 +16,12 @@ bool scan_double(const char *text, double *value);
 enum { SCAN_NAME = 64 };
 bool scan_is_name(const char *word);
 
+/* Whether a word is the name of a file with that ending that rules of Make can name: letters, digits and _ - . @ +, not
+ * . first. */
+bool scan_is_file_name(const char *word, const char *ending);
+/* Whether it can be the name of a photo, without the ending of its file: letters, digits, _, - and @. */
+bool scan_is_photo_name(const char *word);
+
 locale_t scan_c_locale(void); /* for uselocale() around code that prints numbers */
 
 /* The known word nearest to `word` in edit distance, for "did you mean"; NULL if none is near. next(ctx, i) returns the

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "common/base/array.h"
+#include "common/base/scan.h"
 
 #define BLANKS " \t\r\n"
 
@@ -47,11 +48,6 @@ enum status name_list_read(struct name_list *list, const char *path, const char 
 }
 
 /* The rules name them without quotes. */
-static bool is_plain(const char *name, size_t length)
-{
-    return length && strspn(name, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_-.@+") >= length;
-}
-
 enum status name_list_add_files(struct name_list *list, const char *folder, const char *before, const char *after,
                                 struct err *err)
 {
@@ -63,8 +59,8 @@ enum status name_list_add_files(struct name_list *list, const char *folder, cons
     for (const struct dirent *entry; !err->status && (entry = readdir(dir)); errno = 0) {
         const char *name = entry->d_name;
         const size_t n = strlen(name);
-        if (*name == '.' || n <= head + tail || strncmp(name, before, head) || strcmp(name + n - tail, after)) continue;
-        if (is_plain(name + head, n - head - tail)) name_list_add(&found, name + head, n - head - tail, err);
+        if (n > head + tail && !strncmp(name, before, head) && scan_is_file_name(name, after))
+            name_list_add(&found, name + head, n - head - tail, err);
     }
     if (!err->status && errno) err_errno(err, "list", folder);
     closedir(dir);

@@ -119,12 +119,6 @@ static enum status read_eyes(struct scene_facts *f, struct err *err)
     return err->status;
 }
 
-/* As --holdout-views takes names. */
-static bool is_photo_name(const char *word)
-{
-    return !word[strspn(word, "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789_@-")];
-}
-
 /* Lines `photo NAME in STATE` of states.txt; what else they may say is for light_levels to check. */
 static enum status read_other_light(struct scene_facts *f, struct err *err)
 {
@@ -135,7 +129,7 @@ static enum status read_other_light(struct scene_facts *f, struct err *err)
     while (!err->status && textfile_next(&t)) {
         struct err unread = ERR_INIT;
         if (textfile_word(&t, "a statement", &word, &unread) || strcmp(word, "photo") != 0 ||
-            textfile_word(&t, "a photo's name", &word, &unread) || !is_photo_name(word))
+            textfile_word(&t, "a photo's name", &word, &unread) || !scan_is_photo_name(word))
             continue;
         if (!name_list_has(&f->other_light, word)) name_list_add(&f->other_light, word, strlen(word), err);
     }

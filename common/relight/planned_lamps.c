@@ -96,8 +96,9 @@ static enum status read_web(struct planned_lamp *l, const char *file, const stru
 {
     const char *slash = strrchr(t->path, '/');
     char path[FILE_PATH], folder[FILE_PATH] = ".";
-    if (strchr(file, '/') || *file == '.')
-        return textfile_error(t, err, file, "the name of an IES file beside this one, without a folder");
+    if (!scan_is_file_name(file, ".ies"))
+        return textfile_error(t, err, file,
+                              "an IES file beside this one, without a folder: FILE.ies, of letters, digits and _-.@+");
     if (slash && (size_t)(slash - t->path) < sizeof folder) {
         memcpy(folder, t->path, (size_t)(slash - t->path));
         folder[slash - t->path] = '\0';

@@ -186,6 +186,8 @@ static enum status read_photo(struct state_list *l, struct textfile *t, struct e
     *p = (struct state_photo){.line = t->line};
     if (textfile_word(t, "a photo's name", &word, err)) return err->status;
     if (!(p->name = strdup(word))) return err_nomem(err, "a name", strlen(word));
+    if (!scan_is_photo_name(word))
+        return textfile_error(t, err, word, "the name of a photo, without the ending of its file");
     for (int i = 0; i + 1 < l->photo_count; i++)
         if (!strcmp(l->photos[i].name, word)) return textfile_error(t, err, word, "a photo that no line above names");
     if (read_state_name(&p->state, l, t, err) || !textfile_more(t)) return err->status;

@@ -32,11 +32,7 @@ static enum status read_three(struct script_reader *r, const char *what, double 
     return ST_OK;
 }
 
-static bool is_web_file(const char *word)
-{
-    const size_t length = strlen(word);
-    return length > 4 && length <= 255 && !strcmp(word + length - 4, ".ies") && !strpbrk(word, "/\r") && *word != '.';
-}
+static bool is_web_file(const char *word) { return strlen(word) <= 255 && scan_is_file_name(word, ".ies"); }
 
 /* FILE.ies at X Y Z, and options. */
 static enum status read_planned(struct script_reader *r, struct statement *s)
@@ -50,7 +46,8 @@ static enum status read_planned(struct script_reader *r, struct statement *s)
                               "a name of letters, digits, _ and -, which does not begin with -");
     if (textfile_word(&r->t, "an IES file, FILE.ies", &word, r->err)) return r->err->status;
     if (!is_web_file(word))
-        return textfile_error(&r->t, r->err, word, "an IES file in the scene's folder, FILE.ies, without a folder");
+        return textfile_error(&r->t, r->err, word,
+                              "an IES file in the scene's folder, FILE.ies, of letters, digits and _-.@+");
     s->mesh = script_keep_word(r, word);
     if (script_expect(r, "at") || read_three(r, "a coordinate", l->at)) return r->err->status;
     while (textfile_more(&r->t)) {

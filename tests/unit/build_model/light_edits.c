@@ -300,6 +300,8 @@ static void statements_without_meaning_are_refused(void **state)
         {"lamp l\n", "lamp NAME off | lamp NAME scale R G B"},
         {"lamp l ies l.obj at 1 1 2\n", "an IES file in the scene's folder, FILE.ies"},
         {"lamp l ies a/l.ies at 1 1 2\n", "an IES file in the scene's folder, FILE.ies"},
+        {"lamp l ies L.IES at 1 1 2\n", "FILE.ies, of letters, digits"},
+        {"lamp l ies \"a l.ies\" at 1 1 2\n", "FILE.ies, of letters, digits"},
         {"lamp l ies l.ies 1 1 2\n", "found \"1\""},
         {"lamp l ies l.ies at 1 1\n", "a coordinate"},
         {"lamp l ies l.ies at 1 1 2 aim 0 0 0\n", "a direction, such as 0 0 -1"},

@@ -240,12 +240,19 @@ static void errors_of_planned_lamps_name_file_and_line(void **state)
     assert_refused("lamp two ies none.ies at 1 0 2", "none.ies");
     assert_refused("lamp two ies dark.ies at 1 0 2", "an intensity above 0");
     assert_refused("lamp two ies ../spot.ies at 1 0 2", "without a folder");
+    /* files that rules do not name, so that levels would not follow them */
+    scratch_write("spot.IES", SPOT);
+    scratch_write("my spot.ies", SPOT);
+    assert_refused("lamp two ies spot.IES at 1 0 2", "FILE.ies, of letters");
+    assert_refused("lamp two ies \"my spot.ies\" at 1 0 2", "FILE.ies, of letters");
     assert_refused("lamp two ies spot.ies at 1 0", "a coordinate");
     assert_refused("lamp two ies spot.ies at 1 0 2 aim 0 0 0", "straight down");
     assert_refused("lamp two ies spot.ies at 1 0 2 colour 0 0 0", "a number above 0");
     assert_refused("lamp two ies spot.ies at 1 0 2 tilt 3", "aim DX DY DZ");
     assert_refused("lamp -two ies spot.ies at 1 0 2", "a name of letters");
     assert_refused("lamp two 3", "ies");
+    assert_refused("state off lamps off\nphoto IMG_1.jpg in off",
+                   "states.txt:4: found \"IMG_1.jpg\", wanted the name of a photo, without the ending of its file");
 }
 
 int main(void)
