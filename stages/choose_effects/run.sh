@@ -36,6 +36,8 @@ check_given()
         usage "CAMERAS=$REMODEL_CAMERAS: the film would be called \"$given\"; wanted a name of letters, digits, _ and -. Rename it."
     case $REMODEL_CAMERAS in *.json) [ -f "$REMODEL_CAMERAS" ] ;; *) [ -e "$REMODEL_CAMERAS/images.txt" ] && [ -e "$REMODEL_CAMERAS/cameras.txt" ] ;; esac ||
         usage "CAMERAS=$REMODEL_CAMERAS has no cameras. $good"
+    [ "${REMODEL_CAMERAS_FRAME:-scene}" = scene ] ||
+        usage "CAMERAS_FRAME=$REMODEL_CAMERAS_FRAME: a film's cameras are in the scene's frame, that of points/points.ply. Leave it out, or make remodel alone."
     [ ! -e "$folder/keyframes/$given.txt" ] || usage "CAMERAS=$REMODEL_CAMERAS: $folder/keyframes/$given.txt is a film of this name. Rename one of them."
     case $given in auto | all | morph) false ;; *) ! "$bin/choose_effects" --effect "$given" >/dev/null 2>&1 ;; esac ||
         usage "CAMERAS=$REMODEL_CAMERAS: $given means something else; rename it."

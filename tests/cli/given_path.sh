@@ -55,6 +55,8 @@ what_is_no_path_is_refused()
     mkdir -p empty; refused CAMERAS=empty 'has no cameras. Give transforms.json'
     cp $move/transforms.json 'my path.json'; refused 'CAMERAS=my path.json' 'wanted a name of letters'
     cp $move/transforms.json dolly_in.json; refused CAMERAS=dolly_in.json 'dolly_in means something else'
+    rc=0; make -s DEPS=manual SCENE=t CAMERAS=fly.json CAMERAS_FRAME=model video >log 2>&1 || rc=$?
+    [ "$rc" != 0 ] && grep -q "CAMERAS_FRAME=model: a film's cameras are in the scene's frame" log || { cat log; fail "CAMERAS_FRAME with a film"; }
     echo '{"frames": 3}' >bad.json; refused CAMERAS=bad.json 'has no list "frames" of cameras'
     [ ! -e out/t/parallax/bad/path.txt ] || fail "a path was left"
     rc=0; "$B/bin/plan_path" --views out/t/views --effect x --out x --cameras fly.json --keyframes k 2>err.txt || rc=$?
