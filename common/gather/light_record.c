@@ -7,8 +7,8 @@
 
 #include "common/product/product.h"
 
-static const char *const words[LIGHT_SOURCES] = {"none", "texture",  "synthesised", "sky", "sky-guessed",
-                                                 "lamp", "material", "object"};
+static const char *const words[LIGHT_SOURCES] = {"none",        "texture", "synthesised", "sky",
+                                                 "sky-guessed", "lamp",    "material",    "object"};
 
 enum status light_record_write(const struct light_record *r, const char *path, const struct provenance *prov,
                                struct err *err)

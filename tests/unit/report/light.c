@@ -20,7 +20,8 @@ static const char MATERIALS[] = "remodel-materials 1\nmaterial oak ward 0.2 0.1 
                                 "range oak 0.19 0.21 0.09 0.11 0.04 0.06 0.02 0.04 0.05 -\n"
                                 "evidence oak 400 100 4 1.2 2 -1 1.1 a gloss <explains> more\n";
 static const char RECORD[] = "remodel-light-record 2\npoints 40 dark 1\nerror 0.01 0.02 0.05\n"
-                             "shares none 0 texture 0.5 synthesised 0.2 sky 0 sky-guessed 0.1 lamp 0.15 material 0 object 0.05\n";
+                             "shares none 0 texture 0.5 synthesised 0.2 sky 0 sky-guessed 0.1 lamp 0.15 "
+                             "material 0 object 0.05\n";
 
 static char *page_of_scratch(void) { return scratch_page("scene", "fit_lights"); }
 
