@@ -43,6 +43,7 @@ void bake_release(struct bake *b)
     free(b->lists);
     free(b->counts);
     free(b->hidden);
+    free(b->surely);
     *b = (struct bake){0};
 }
 
@@ -123,5 +124,8 @@ enum status bake_list_texels(struct bake *b, struct err *err)
     b->lists = malloc((b->list_count + 1) * sizeof *b->lists);
     b->counts = calloc(b->list_count + 1, 1);
     b->hidden = calloc(b->list_count + 1, 1);
-    return b->lists && b->counts && b->hidden ? ST_OK : err_nomem(err, "candidates", b->list_count * sizeof *b->lists);
+    b->surely = calloc(b->list_count + 1, 1);
+    return b->lists && b->counts && b->hidden && b->surely
+               ? ST_OK
+               : err_nomem(err, "candidates", b->list_count * sizeof *b->lists);
 }

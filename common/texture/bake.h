@@ -72,6 +72,7 @@ struct bake {
     struct candidate (*lists)[CANDIDATES];
     uint8_t *counts;
     uint8_t *hidden; /* views in which something stands in front of the texel */
+    uint8_t *surely; /* 1: in one of them that is not the view's word alone (SOURCE_HIDDEN) */
     size_t list_count;
     struct filled_atlas *filled; /* where unseen texels take their texture from; NULL: from their own face */
 };

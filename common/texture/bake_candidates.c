@@ -80,8 +80,9 @@ static void try_texel(const struct view_job *job, const struct bake_tile *t, con
     if (!(u >= 0 && r >= 0 && u < v->camera.width && r < v->camera.height)) return;
     const size_t at = (size_t)r * (size_t)v->camera.width + (size_t)u;
     if (v->state[at] == SOURCE_NONE || v->id[at] != (uint32_t)m->surface->id) return;
-    if (v->state[at] == SOURCE_HIDDEN) {
+    if (v->state[at] == SOURCE_HIDDEN || v->state[at] == SOURCE_ALLEGED) {
         if (job->b->hidden[list] < UINT8_MAX) job->b->hidden[list]++;
+        if (v->state[at] == SOURCE_HIDDEN) job->b->surely[list] = 1;
         return;
     }
     const double distance = vec3_length(vec3_sub(v->camera.center, p)), cosine = m->off / distance;

@@ -6,7 +6,9 @@
  * agree in colour (after their gains); one that shows furniture in front of it agrees with others only by chance, since
  * furniture moves against the surface from view to view [Waechter 2014]. The views of one photo have one vote. A view
  * in which something surely stands in front of the texel votes against those that are not sure, and if all are outvoted
- * the texel is left to be synthesised. Clipped or noisy pixels are taken where POOR_PHOTOS show nothing else and none
+ * the texel is left to be synthesised. But where all views together know of no thing before a surface, what single
+ * views see in front of it may be an error of their depth, as it is in an open door that the model lacks: then the best
+ * view that agrees with the model is the last resort, though colours outvote it. Clipped or noisy pixels are taken where POOR_PHOTOS show nothing else and none
  * sees something in front: that is a lamp, lit or not; glare moves from photo to photo. The same decides whether the
  * viewpoint's own pixel may be copied where its depth is not sure. */
 #include <math.h>
@@ -16,6 +18,7 @@
 #include "common/texture/bake.h"
 
 enum { CHUNK = 4096, POOR_PHOTOS = 4 };
+static const double BARE = 0.02;    /* of a surface's texels may be hidden by things, and it is bare */
 static const double DIM = 0.02;     /* of white: differences of darker colours count less */
 static const float HIDDEN = 0.5f;   /* weight of a view in which something surely stands in front */
 static const float LIKELY = 0.75f;  /* vote of a view for itself whose depth, not sure, has nothing in front */
@@ -65,8 +68,8 @@ static int photos_of(const struct bake *b, const struct candidate *in, int count
 }
 
 /* Puts the best candidate of the texel first; the order of the others is kept. Drops the doubt of the viewpoint's own
- * pixel: the texel becomes original or wanted. */
-static void choose_texel(struct bake *b, size_t texel)
+ * pixel: the texel becomes original or wanted. bare: no thing stands before its surface. */
+static void choose_texel(struct bake *b, size_t texel, bool bare)
 {
     const int32_t list = b->list[texel];
     struct candidate *in = b->lists[list];
@@ -99,7 +102,8 @@ static void choose_texel(struct bake *b, size_t texel)
         }
         if (penalty < least) least = penalty, best = i;
     }
-    if (least >= OUTVOTED && b->hidden[list]) b->counts[list] = 0;
+    const bool last_resort = bare && count && in[best].state == SOURCE_LIKELY;
+    if (least >= OUTVOTED && b->hidden[list] && !last_resort) b->counts[list] = 0;
     if (count && in[best].state == SOURCE_POOR && (photos_of(b, in, count) < POOR_PHOTOS || b->hidden[list]))
         b->counts[list] = 0;
     if (best == 0) return;
@@ -108,12 +112,40 @@ static void choose_texel(struct bake *b, size_t texel)
     in[0] = first;
 }
 
+struct choice {
+    struct bake *b;
+    const struct bake_tile *tile;
+    bool bare;
+};
+
 static void choose_range(void *ctx, size_t begin, size_t end, int thread)
 {
-    struct bake *b = ctx;
+    const struct choice *c = ctx;
     (void)thread;
     for (size_t i = begin; i < end; i++)
-        if (b->list[i] >= 0) choose_texel(b, i);
+        if (c->b->list[c->tile->first + i] >= 0) choose_texel(c->b, c->tile->first + i, c->bare);
 }
 
-void bake_choose(struct bake *b) { parallel_for(b->texel_count, CHUNK, choose_range, b); }
+/* Whether no thing stands before a surface, but for rims that end on it. */
+static bool is_bare(const struct bake *b, int surface)
+{
+    size_t hidden = 0, all = 0;
+    for (int k = 0; k < b->tile_count; k++) {
+        const struct bake_tile *t = &b->tiles[k];
+        const size_t texels = (size_t)t->raster.width * (size_t)t->raster.height;
+        for (size_t i = 0; t->surface == surface && i < texels; i++) {
+            if (b->list[t->first + i] < 0) continue;
+            all++;
+            hidden += b->surely[b->list[t->first + i]];
+        }
+    }
+    return (double)hidden <= BARE * (double)all;
+}
+
+void bake_choose(struct bake *b)
+{
+    for (int k = 0; k < b->tile_count; k++) {
+        struct choice c = {b, &b->tiles[k], is_bare(b, b->tiles[k].surface)};
+        parallel_for((size_t)c.tile->raster.width * (size_t)c.tile->raster.height, CHUNK, choose_range, &c);
+    }
+}

@@ -157,7 +157,7 @@ static enum status list_faces(struct source_view *v, struct err *err)
 }
 
 /* Pixels that show a thing, or whose ray meets one, and those around them are hidden; where depth is not sure, those in
- * a wider rim: plain sides of furniture get the depth of the wall. */
+ * a wider rim: plain sides of furniture get the depth of the wall. What else stands in front is this view's word. */
 static enum status hide_things(struct source_view *v, const char *folder, const struct view *camera,
                                const struct texture_params *params, struct provenance *prov, struct err *err)
 {
@@ -179,7 +179,11 @@ static enum status hide_things(struct source_view *v, const char *folder, const 
         uint8_t *const states[] = {&v->own[i], &v->state[i]};
         for (int k = 0; k < 2; k++) {
             const float reach = *states[k] == SOURCE_CLEAN ? margin : wide;
-            if (*states[k] != SOURCE_NONE && squared[i] <= reach * reach) *states[k] = SOURCE_HIDDEN;
+            if (*states[k] == SOURCE_NONE) continue;
+            if (squared[i] <= reach * reach)
+                *states[k] = SOURCE_HIDDEN;
+            else if (*states[k] == SOURCE_HIDDEN)
+                *states[k] = SOURCE_ALLEGED;
         }
     }
     thing_mask_release(&mask);

@@ -14,11 +14,12 @@ enum { SOURCE_LEVELS = 4 }; /* full, half, quarter, eighth size */
 
 /* What a pixel is good for. */
 enum source_state {
-    SOURCE_NONE,   /* outside the photo, near a jump */
-    SOURCE_HIDDEN, /* something stands in front */
-    SOURCE_POOR,   /* clipped or too noisy: only if nothing better shows the place, such as a lamp */
-    SOURCE_UNSURE, /* something may stand in front: other views decide */
-    SOURCE_LIKELY, /* nothing stands in front, by a depth that is not sure: other views may outvote it */
+    SOURCE_NONE,    /* outside the photo, near a jump */
+    SOURCE_ALLEGED, /* something stands in front, by this view alone: all views together know of no thing there */
+    SOURCE_HIDDEN,  /* something stands in front */
+    SOURCE_POOR,    /* clipped or too noisy: only if nothing better shows the place, such as a lamp */
+    SOURCE_UNSURE,  /* something may stand in front: other views decide */
+    SOURCE_LIKELY,  /* nothing stands in front, by a depth that is not sure: other views may outvote it */
     SOURCE_CLEAN,
 };
 

@@ -222,6 +222,18 @@ static void a_likely_view_is_outvoted_by_two_that_see_something_in_front(void **
     for (int count = 1; count <= 2; count++) assert_float_equal(share_shown(unsure, count, -1), count < 2, 0);
 }
 
+/* An open door that the model lacks: no thing is known before the wall, though single views see one. */
+static void what_single_views_allege_leaves_the_last_resort(void **state)
+{
+    (void)state;
+    static const uint8_t likely[] = {SOURCE_LIKELY, SOURCE_ALLEGED, SOURCE_ALLEGED, SOURCE_ALLEGED};
+    static const uint8_t unsure[] = {SOURCE_UNSURE, SOURCE_ALLEGED};
+    static const uint8_t known[] = {SOURCE_LIKELY, SOURCE_ALLEGED, SOURCE_HIDDEN};
+    for (int count = 1; count <= 4; count++) assert_float_equal(share_shown(likely, count, -1), 1, 0);
+    assert_float_equal(share_shown(unsure, 2, -1), 0, 0);
+    assert_float_equal(share_shown(known, 3, -1), 0, 0); /* a thing is: as if all views saw it */
+}
+
 static void a_likely_view_that_another_agrees_with_is_not_outvoted(void **state)
 {
     (void)state;
@@ -764,6 +776,7 @@ int main(void)
         cmocka_unit_test(views_outvote_one_that_something_stands_in_front_of),
         cmocka_unit_test(a_likely_view_is_outvoted_by_two_that_see_something_in_front),
         cmocka_unit_test(a_likely_view_that_another_agrees_with_is_not_outvoted),
+        cmocka_unit_test(what_single_views_allege_leaves_the_last_resort),
         cmocka_unit_test(a_clean_view_is_never_outvoted),
         cmocka_unit_test(beside_a_hole_views_of_unsure_depth_do_not_count),
         cmocka_unit_test(beside_a_hole_a_clean_view_takes_the_place_of_one_of_unsure_depth),
