@@ -7,10 +7,11 @@
  * furniture moves against the surface from view to view [Waechter 2014]. The views of one photo have one vote. A view
  * in which something surely stands in front of the texel votes against those that are not sure, and if all are outvoted
  * the texel is left to be synthesised. But where all views together know of no thing before a surface, what single
- * views see in front of it may be an error of their depth, as it is in an open door that the model lacks: then the best
- * view that agrees with the model is the last resort, though colours outvote it. Clipped or noisy pixels are taken where POOR_PHOTOS show nothing else and none
- * sees something in front: that is a lamp, lit or not; glare moves from photo to photo. The same decides whether the
- * viewpoint's own pixel may be copied where its depth is not sure. */
+ * views see in front of it may be an error of their depth, as it is in an open door that the model lacks: then the
+ * best view that agrees with the model is the last resort, though colours outvote it. Clipped or noisy pixels are
+ * taken where POOR_PHOTOS show nothing else and none sees something in front: that is a lamp, lit or not; glare
+ * moves from photo to photo. The same decides whether the viewpoint's own pixel may be copied where its depth is
+ * not sure. */
 #include <math.h>
 #include <string.h>
 
