@@ -10,6 +10,10 @@
  * one quotient: the first change is that of direct light, largest near a lamp, and the next one, spread over the room,
  * is much smaller whatever the room reflects. So q is the larger one of the last two.
  *
+ * Where next to no lamp or window is known, all light of a texel would come from other texels, each round would multiply
+ * all light by what the edit changed, and the room would go dark, or burst. What texels send out then follows their light
+ * in part only: f E_(k-1) / E_0 + 1 - f.
+ *
  * Source: [Colburn 2014, 5.5]. Different here: rays are traced once (transport.h); the rule of the end. */
 #include "stages/update_vita/light_rounds.h"
 
@@ -25,17 +29,19 @@ static const double DARK = 1e-4; /* of the irradiance before */
 
 struct round_job {
     const struct transport *t;
+    double reflecting;
     const struct rgb *old;
     struct rgb *now;
     double *change; /* of each sample, a part of its irradiance */
     double mean;    /* irradiance before, over all samples that have one */
 };
 
-static struct rgb quotient_of(const struct transport *t, int i, struct rgb after)
+static struct rgb quotient_of(const struct transport *t, double reflecting, int i, struct rgb after)
 {
     const struct transport_sample *s = &t->samples[i];
     if (s->place.kind != LIGHT_PLACE_TEXTURE) return rgb_grey(1);
-    return light_quotient(t->rows[i].before, after, s->place.colour, NULL);
+    const struct rgb q = light_quotient(t->rows[i].before, after, s->place.colour, NULL);
+    return reflecting < 1 ? rgb_add(rgb_scale(q, reflecting), rgb_grey(1 - reflecting)) : q;
 }
 
 static void run_some(void *ctx, size_t begin, size_t end, int thread)
@@ -47,7 +53,7 @@ static void run_some(void *ctx, size_t begin, size_t end, int thread)
         const struct rgb d = rgb_make(fabs(e.r - was.r), fabs(e.g - was.g), fabs(e.b - was.b));
         const double whole = fmax(rgb_max(e), DARK * fmax(rgb_max(j->t->rows[i].before), j->mean));
         j->change[i] = whole > 0 ? rgb_max(d) / whole : 0;
-        j->now[2 * i] = quotient_of(j->t, (int)i, e);
+        j->now[2 * i] = quotient_of(j->t, j->reflecting, (int)i, e);
         j->now[2 * i + 1] = e;
     }
 }
@@ -100,7 +106,8 @@ static double shrinking(const struct rounds *r, double change)
     return fmax(change / last, last / r->list[r->count - 2].change);
 }
 
-enum status rounds_run(struct rounds *r, const struct transport *t, int most, double tolerance, struct err *err)
+enum status rounds_run(struct rounds *r, const struct transport *t, double reflecting, int most, double tolerance,
+                       struct err *err)
 {
     const size_t values = 2 * (size_t)t->count + 2;
     struct rgb *next = calloc(values, sizeof *next);
@@ -110,7 +117,7 @@ enum status rounds_run(struct rounds *r, const struct transport *t, int most, do
     if (!r->values || !next || !change) err_nomem(err, "rounds", values * sizeof *next);
     if (!err->status) begin(r->values, t);
     for (int k = 0; !err->status && k < most && !r->settled; k++) {
-        struct round_job j = {t, r->values, next, change, mean};
+        struct round_job j = {t, reflecting, r->values, next, change, mean};
         parallel_for((size_t)t->count, 64, run_some, &j);
         struct rgb *old = r->values;
         r->values = next;

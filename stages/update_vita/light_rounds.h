@@ -17,8 +17,10 @@ struct rounds {
     int bounded;  /* samples whose albedo would be above LIGHT_ALBEDO_MAX */
 };
 
-/* The caller releases r in each case. */
-enum status rounds_run(struct rounds *r, const struct transport *t, int most, double tolerance, struct err *err);
+/* reflecting, 0 to 1: the part of what texels send out that follows the light on them; the rest stays as it was. The
+ * caller releases r in each case. */
+enum status rounds_run(struct rounds *r, const struct transport *t, double reflecting, int most, double tolerance,
+                       struct err *err);
 void rounds_release(struct rounds *r);
 
 #endif

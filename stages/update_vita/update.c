@@ -22,6 +22,10 @@
 
 enum { GLANCES = 64, FEW_RAYS = 4 }; /* rays that tell an outer face; rays / this choose where samples are needed */
 static const double OUTSIDE = 0.9;   /* of the rays see the outdoors */
+/* A room reflects less than 95 % of its light: if lamps and windows give a smaller share of it than the rest, they are not
+ * known. Then rooms are taken to reflect what bright ones do. */
+enum { ASKED = 512 }; /* samples that tell of it */
+static const double LEAST_KNOWN = 0.05, REFLECTING = 0.8;
 
 struct work {
     struct update_job *job;
@@ -31,6 +35,8 @@ struct work {
     struct transport transport;
     struct rounds rounds;
     struct progress progress;
+    double known;      /* share of the light before the edit that comes from lamps and from outdoors */
+    double reflecting; /* for rounds_run() */
 };
 
 /* ------------------------------------------------------------------------------------------------------------ faces */
@@ -66,6 +72,24 @@ static enum status make_nets(struct work *w, struct err *err)
     return err->status;
 }
 
+/* Finds which share of the light before the edit comes from what is known to shine. */
+static void ask_for_light(struct work *w)
+{
+    const struct transport *t = &w->transport;
+    const int step = t->count / ASKED + 1;
+    double known = 0, all = 0;
+    for (int i = 0; i < t->count; i += step) {
+        struct irradiance e;
+        if (t->samples[i].place.kind != LIGHT_PLACE_TEXTURE) continue;
+        ray_irradiance(&e, &w->change.before.field, t->samples[i].place.before, GLANCES, (uint64_t)i);
+        const double light = rgb_luminance(e.value);
+        known += light * (e.from[LIGHT_SKY] + e.from[LIGHT_SKY_GUESSED] + e.from[LIGHT_LAMP]);
+        all += light;
+    }
+    w->known = all > 0 ? known / all : 1;
+    w->reflecting = w->known < LEAST_KNOWN ? REFLECTING : 1;
+}
+
 /* ------------------------------------------------------------------------------------------------------- refinement */
 
 static void count_done(void *ctx, int64_t samples) { progress_add(ctx, samples); }
@@ -82,7 +106,7 @@ static enum status trace_few(struct work *w, int first, int count, struct err *e
 static enum status first_values(const struct work *w, struct rgb **values, struct err *err)
 {
     struct rounds r = {0};
-    rounds_run(&r, &w->transport, 2, w->job->params.tolerance, err);
+    rounds_run(&r, &w->transport, w->reflecting, 2, w->job->params.tolerance, err);
     *values = r.values;
     r.values = NULL;
     rounds_release(&r);
@@ -193,6 +217,10 @@ static void tell(const struct work *w)
     const struct round *last = r->count ? &r->list[r->count - 1] : NULL;
     log_note("%d samples, %d of them brighter than a white surface could be under the light that was found",
              w->transport.count, r->bounded);
+    if (w->reflecting < 1)
+        log_warn("the lamps and windows that are known give %.2g %% of the rooms' light, so that %.0f %% of what each "
+                 "surface sends out stays as photographed. Mark lamps in lights.txt, and cut windows into the model.",
+                 100 * w->known, 100 * (1 - w->reflecting));
     if (last && r->settled)
         log_note("%d rounds; at most %.2g %% of a sample's light is missing", r->count, 100 * last->left);
     else if (last)
@@ -207,8 +235,11 @@ static enum status run(struct work *w, struct err *err)
     char vita[FILE_PATH];
     if (light_change_read(&w->change, &j->files, &j->prov, err) ||
         edited_atlas_make(&w->atlas, &w->change, j->files.vita, err) || make_nets(w, err) ||
-        transport_init(&w->transport, &w->change, &w->nets, err) || refine(w, err) || trace(w, err) ||
-        rounds_run(&w->rounds, &w->transport, j->params.rounds, j->params.tolerance, err))
+        transport_init(&w->transport, &w->change, &w->nets, err))
+        return err->status;
+    ask_for_light(w);
+    if (refine(w, err) || trace(w, err) ||
+        rounds_run(&w->rounds, &w->transport, w->reflecting, j->params.rounds, j->params.tolerance, err))
         return err->status;
     tell(w);
     warn_of_lamps(&w->change);

@@ -32,7 +32,7 @@ static void make_sphere(struct sphere *s, enum light_place_kind kind, double col
 static void run(struct rounds *r, const struct sphere *s, int most)
 {
     struct err err = ERR_INIT;
-    assert_ok(rounds_run(r, &s->t, most, 0.01, &err), err);
+    assert_ok(rounds_run(r, &s->t, 1, most, 0.01, &err), err);
 }
 
 /* With emission e, radiance is e / (1 - a) everywhere [a: the albedo]. */
@@ -174,6 +174,30 @@ static void texels_that_seem_brighter_than_white_gain_no_energy(void **state)
     rounds_release(&r);
 }
 
+/* No lamp is known, and the edit takes 3 % of what each sample gets: all light would go. With f = 0.8 of it reflected, E =
+ * 0.97 E_0 (f E / E_0 + 1 - f). */
+static void a_room_without_known_lamps_keeps_its_light(void **state)
+{
+    static struct sphere s;
+    const double fixed[N] = {0}, f = 0.8, kept = 0.97;
+    struct err err = ERR_INIT;
+    struct rounds r;
+    (void)state;
+    make_sphere(&s, LIGHT_PLACE_TEXTURE, kept, fixed);
+    for (int i = 0; i < N; i++) s.rows[i].before = rgb_grey(PI);
+    assert_ok(rounds_run(&r, &s.t, f, 400, 0.01, &err), err);
+    assert_true(r.settled);
+    const double quotient = kept * (1 - f) / (1 - f * kept);
+    for (int i = 0; i < N; i++) {
+        assert_near(r.values[2 * i + 1].g / PI, quotient, 0.01);
+        assert_near(r.values[2 * i].g, 1 - f + f * quotient, 0.01);
+    }
+    rounds_release(&r);
+    run(&r, &s, 400);
+    assert_true(r.values[1].g < 0.01 * PI);
+    rounds_release(&r);
+}
+
 static void nothing_changed_ends_after_one_round_with_quotients_of_one(void **state)
 {
     static struct sphere s;
@@ -236,6 +260,7 @@ int main(void)
         cmocka_unit_test(where_all_lights_go_out_it_becomes_black),
         cmocka_unit_test(a_painted_sample_among_texels_becomes_black_too),
         cmocka_unit_test(texels_that_seem_brighter_than_white_gain_no_energy),
+        cmocka_unit_test(a_room_without_known_lamps_keeps_its_light),
         cmocka_unit_test(nothing_changed_ends_after_one_round_with_quotients_of_one),
         cmocka_unit_test(rounds_that_do_not_settle_say_so),
         cmocka_unit_test(threads_do_not_change_a_bit),

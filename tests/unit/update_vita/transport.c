@@ -182,7 +182,7 @@ static void a_painted_room_absorbs_what_its_lamp_sends_out(void **state)
         e.map = (struct texture_map){.faces = faces, .face_count = 6};
         e.lights = "disk a 0.3 0.2 0.5 0 0 -1 0.3 9 9 9 90 0\n"; /* hangs */
         trace(&t, &e, 0.4);
-        assert_ok(rounds_run(&r, &t.transport, 1000, 0.002, &err), err);
+        assert_ok(rounds_run(&r, &t.transport, 1, 1000, 0.002, &err), err);
         assert_true(r.settled);
         const double power = PI * 9 * PI * 0.3 * 0.3, area = 6 * 16;
         const double front = PI * 0.3 * 0.3 * (albedos[k] > 0), absorbed = area * (1 - (double)albedos[k]) + front;
