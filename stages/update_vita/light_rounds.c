@@ -10,9 +10,9 @@
  * one quotient: the first change is that of direct light, largest near a lamp, and the next one, spread over the room,
  * is much smaller whatever the room reflects. So q is the larger one of the last two.
  *
- * Where next to no lamp or window is known, all light of a texel would come from other texels, each round would multiply
- * all light by what the edit changed, and the room would go dark, or burst. What texels send out then follows their light
- * in part only: f E_(k-1) / E_0 + 1 - f.
+ * Where next to no lamp or window is known, all light of a texel would come from other texels, each round would
+ * multiply all light by what the edit changed, and the room would go dark, or burst. What texels send out then follows
+ * their light in part only: f E_(k-1) / E_0 + 1 - f.
  *
  * Source: [Colburn 2014, 5.5]. Different here: rays are traced once (transport.h); the rule of the end. */
 #include "stages/update_vita/light_rounds.h"

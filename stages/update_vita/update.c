@@ -22,8 +22,8 @@
 
 enum { GLANCES = 64, FEW_RAYS = 4 }; /* rays that tell an outer face; rays / this choose where samples are needed */
 static const double OUTSIDE = 0.9;   /* of the rays see the outdoors */
-/* A room reflects less than 95 % of its light: if lamps and windows give a smaller share of it than the rest, they are not
- * known. Then rooms are taken to reflect what bright ones do. */
+/* A room reflects less than 95 % of its light: if lamps and windows give a smaller share of it than the rest, they are
+ * not known. Then rooms are taken to reflect what bright ones do. */
 enum { ASKED = 512 }; /* samples that tell of it */
 static const double LEAST_KNOWN = 0.05, REFLECTING = 0.8;
 

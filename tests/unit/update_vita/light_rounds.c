@@ -174,8 +174,8 @@ static void texels_that_seem_brighter_than_white_gain_no_energy(void **state)
     rounds_release(&r);
 }
 
-/* No lamp is known, and the edit takes 3 % of what each sample gets: all light would go. With f = 0.8 of it reflected, E =
- * 0.97 E_0 (f E / E_0 + 1 - f). */
+/* No lamp is known, and the edit takes 3 % of what each sample gets: all light would go. With f = 0.8 of it reflected,
+ * E = 0.97 E_0 (f E / E_0 + 1 - f). */
 static void a_room_without_known_lamps_keeps_its_light(void **state)
 {
     static struct sphere s;
