@@ -47,7 +47,6 @@ enum status name_list_read(struct name_list *list, const char *path, const char 
     return err->status;
 }
 
-/* The rules name them without quotes. */
 enum status name_list_add_files(struct name_list *list, const char *folder, const char *before, const char *after,
                                 struct err *err)
 {

@@ -145,8 +145,11 @@ static bool is_bare(const struct bake *b, int surface)
 
 void bake_choose(struct bake *b)
 {
+    struct choice c = {.b = b};
     for (int k = 0; k < b->tile_count; k++) {
-        struct choice c = {b, &b->tiles[k], is_bare(b, b->tiles[k].surface)};
+        const bool is_next = k && b->tiles[k].surface == b->tiles[k - 1].surface;
+        c.tile = &b->tiles[k];
+        if (!is_next) c.bare = is_bare(b, c.tile->surface);
         parallel_for((size_t)c.tile->raster.width * (size_t)c.tile->raster.height, CHUNK, choose_range, &c);
     }
 }

@@ -149,7 +149,7 @@ static bool run(struct trace_result *result, struct trace_fault fault, bool note
     return !result->code && !result->signal;
 }
 
-/* A temporary file ".NAME.XXXXXX.tmp", or a file in a temporary folder: a killed program cannot remove its own. */
+/* A temporary file of outfile.h, or a file in a temporary folder: a killed program cannot remove its own. */
 static bool is_temporary(const char *path)
 {
     for (const char *p = path; *p;) {

@@ -1,4 +1,5 @@
-/* passing.c - short memory and errors of the disk are told; what is missing or damaged is not, whatever its name. */
+/* passing.c - a lack of memory and an error of the disk are refused. A missing or damaged file is not, even if its
+ * name has the word memory. */
 #include "stages/report/passing.h"
 
 #include <errno.h>
@@ -34,11 +35,9 @@ static void troubles_that_pass_are_refused(void **state)
 static void what_is_missing_or_damaged_is_not(void **state)
 {
     (void)state;
-    assert_false(
-        passes("There is no camera path of memory-lane. cannot open out/memory/parallax/x/path.txt: No such file "
-               "or directory."));
+    assert_false(passes("cannot open out/memory/parallax/memory-lane/path.txt: No such file or directory."));
     assert_false(passes("out/memory.d/metrics.tsv:3: found \"x\", wanted a number."));
-    assert_false(passes("No camera move has been planned yet, so there is no video."));
+    assert_false(passes("out/t/parallax/orbit/video.mp4 is missing."));
 }
 
 int main(void)
